@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
 from typing import Any, Final
 
 import numpy as np
@@ -17,6 +16,7 @@ from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
 from taylor_verify.judge.causes.capped_speed import capped_speed
 from taylor_verify.judge.causes.changed_equations import Changes
+from taylor_verify.judge.causes.cleared_loads import cleared_loads
 from taylor_verify.judge.causes.damped_steps import damped_steps
 from taylor_verify.judge.causes.fit import (
     DIFFERENCE,
@@ -24,7 +24,6 @@ from taylor_verify.judge.causes.fit import (
     Fitted,
     Sizes,
     across,
-    both,
     by_factor,
     gauss_newton,
     orthonormal,
@@ -38,6 +37,7 @@ from taylor_verify.judge.causes.other_bodies import (
     faults_of_added_mass,
     faults_of_bodies,
 )
+from taylor_verify.judge.causes.pairs import Linear, likely_pairs
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, ROUNDINGS, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FAIR, FEW, FIT_ROWS, NOTHING, PAIR, Choice
@@ -45,15 +45,10 @@ from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers, points_of_weights
 
-# Defects of so many roundings are needed to look for two families at once, with so many numbers.
+# Defects of so many roundings are needed to look for two families at once.
 _PAIR_ROUNDINGS: Final = 100.0
-_PAIR_NUMBERS: Final = 6
 # Beside the steps of a method at least this work may be done.
 _BESIDE: Final = 100_000.0
-# Kinds that are one class: no two of them make a pair.
-_OF_INERTIA: Final = dict.fromkeys(
-    ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
-)
 # Without an attitude in the file a load in space axes is only nearly right on the arcs.
 _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
@@ -71,15 +66,6 @@ _OFF_PACE: Final = 1e-4
 _OFF_ROUNDINGS: Final = 30.0
 # Fits that end so near to each other, as a part of the scale, are one.
 _APART: Final = 0.01
-
-
-@dataclass(frozen=True)
-class _Linear:
-    """A family with its slopes at the right numbers, and the part that its linear fit leaves."""
-
-    family: Family
-    slopes: Floats
-    left: float
 
 
 @dataclass(frozen=True)
@@ -169,7 +155,7 @@ class Search:
         if not self.is_clear:
             return None
         is_stepped = self.answer.stepping is not None
-        candidates, linear = [*faults], list[_Linear]()
+        candidates, linear = [*faults], list[Linear]()
         has_methods, is_blind = is_stepped, False
         for group in self._groups(families, candidates):
             of_group = self._linear(group)
@@ -187,13 +173,7 @@ class Search:
         if is_blind:
             candidates = [each for each in candidates if has_few_digits(each, self.floor)]
         elif not is_stepped and not any(map(self._is_exact, candidates)):
-            budget = self.answer.budget
-            with suppress(Spent), budget.at_most(budget.left / 4):
-                candidates += capped_speed(self.answer)
-            with suppress(Spent), budget.at_most(budget.left / 2):
-                candidates += damped_steps(self.answer, stride)
-            with suppress(Spent), budget.at_most(budget.left / 2):
-                candidates += self.from_far([*new_limits(self.answer)])
+            candidates += self._of_simulators(stride)
         cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
         if is_stepped or is_blind:
             return cause
@@ -204,7 +184,21 @@ class Search:
                 cause = self.cause(self._telling([*self._pairs(linear)]), PAIR)
         return cause or self._beside_steps(linear, stride)
 
-    def _over_kinks(self, group: list[_Linear], candidates: list[Candidate]) -> Cause | None:
+    def _of_simulators(self, stride: int) -> Iterator[Candidate]:
+        """Yield what simulators do in a step, or to their actuators, each for a part of the budget."""
+        answer, budget = self.answer, self.answer.budget
+        for part, some in (
+            (4, capped_speed(answer)),
+            (4, cleared_loads(answer)),
+            (2, damped_steps(answer, stride)),
+            (2, self.from_far(new_limits(answer))),
+        ):
+            made = list[Candidate]()
+            with suppress(Spent), budget.at_most(budget.left / part):
+                made = [*some]
+            yield from made
+
+    def _over_kinks(self, group: list[Linear], candidates: list[Candidate]) -> Cause | None:
         """Return a cause that is exact on the whole answer, which goes through kinks, as arcs do not."""
         if not group or not has_kinks(self.answer.right):
             return None
@@ -213,7 +207,7 @@ class Search:
         is_exact = cause is not None and max(cause.leaves[n] for n in self.choice.groups) < least
         return cause if is_exact else None
 
-    def _beside_steps(self, linear: list[_Linear], stride: int) -> Cause | None:
+    def _beside_steps(self, linear: list[Linear], stride: int) -> Cause | None:
         """Return a cause beside the steps of a coarse method."""
         few = [each.slopes for each in linear if each.family.count <= max(FEW, self.answer.n)]
         right, budget = self.answer.right, self.answer.budget
@@ -293,7 +287,7 @@ class Search:
         """Yield families with the numbers that fit best."""
         return self._families(self._linear(families), ())
 
-    def from_far(self, families: Sequence[tuple[Family, Floats]]) -> Iterator[Candidate]:
+    def from_far(self, families: Iterable[tuple[Family, Floats]]) -> Iterator[Candidate]:
         """Yield families of one number, fitted from the best of some far numbers."""
         for family, begins in families:
             tried = [number for number in begins if self._has_motion(family, number)]
@@ -330,11 +324,11 @@ class Search:
                     if least <= (1 if family.kind == WRITTEN else family.count) <= most
                 ]
 
-    def _linear(self, families: Sequence[Family]) -> list[_Linear]:
+    def _linear(self, families: Sequence[Family]) -> list[Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
         sets = [changes for family in families for changes in family.ahead]
         defects, first = self.evidence.coarse([{}, *sets]), 1
-        linear = list[_Linear]()
+        linear = list[Linear]()
         for family in families:
             change = defects[first : first + family.count] - defects[0]
             first += family.count
@@ -343,11 +337,11 @@ class Search:
                 basis = orthonormal(slopes * family.scale, 1e-6)
                 rest = across(basis, self.evidence.of_right.ravel())
                 left = float(np.linalg.norm(rest)) / self.evidence.size
-                linear.append(_Linear(family, slopes, left))
+                linear.append(Linear(family, slopes, left))
         return sorted(linear, key=lambda each: (each.family.count, each.left))
 
     def _families(
-        self, linear: Sequence[_Linear], simple: Sequence[Candidate]
+        self, linear: Sequence[Linear], simple: Sequence[Candidate]
     ) -> Iterator[Candidate]:
         """Yield fitted families; with more numbers than one that reached the rounding, none is tried."""
         counts = [c.count for c in simple if self._is_exact(c)]
@@ -371,28 +365,9 @@ class Search:
                         limit = min(limit, max(BETTER * each.left, _NEARLY))
                     yield candidate
 
-    def _pairs(self, linear: Sequence[_Linear]) -> Iterator[Candidate]:
-        """Yield the best pairs of families with at most six numbers together."""
-        few = [each for each in linear if each.family.count <= FEW]
-        defects, size = self.evidence.of_right.ravel(), self.evidence.size
-        bases = [orthonormal(each.slopes * each.family.scale, 1e-6) for each in few]
-        classes = [_OF_INERTIA.get(each.family.kind, each.family.kind) for each in few]
-        tried = []
-        rests = [across(basis, defects) for basis in bases]
-        for i, k in combinations(range(len(few)), 2):
-            count = few[i].family.count + few[k].family.count
-            if (
-                classes[i] == classes[k]
-                or count > _PAIR_NUMBERS
-                or min(few[i].left, few[k].left) > 0.97
-            ):
-                continue
-            basis = orthonormal(bases[k] - bases[i] @ (bases[i].T @ bases[k]), 1e-9)
-            left = float(np.linalg.norm(across(basis, rests[i]))) / size
-            if left < 0.15:
-                tried.append((left * 3.0**count, i, k))
-        for _, i, k in sorted(tried)[:8]:
-            family = both(self.answer.right, few[i].family, few[k].family)
+    def _pairs(self, linear: Sequence[Linear]) -> Iterator[Candidate]:
+        """Yield two families at once, fitted."""
+        for family in likely_pairs(linear, self.evidence, self.answer.right):
             fit = gauss_newton(self.evidence, family)
-            if fit.size / size < max(PAIR, 3 * self.floor):
+            if fit.size / self.evidence.size < max(PAIR, 3 * self.floor):
                 yield self._candidate(family, fit)

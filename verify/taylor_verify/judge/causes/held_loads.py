@@ -118,13 +118,18 @@ def late_methods(acting: Acting) -> dict[str, Method]:
     }
 
 
+def without_texts(acting: Acting) -> Acting:
+    """Return weight and buoyancy alone, of all loads."""
+    nothing = tuple((name, ZERO_VECTOR) for name, _ in acting.written.vectors)
+    return acting.of(replace(acting.written, vectors=nothing))
+
+
 def _parts(acting: Acting) -> list[HeldLoads]:
-    loads = acting.written
-    nothing = tuple((name, ZERO_VECTOR) for name, _ in loads.vectors)
-    every, hung = written_out(loads), replace(loads, vectors=nothing)
-    parts = [HeldLoads("loads", acting.of(every), acting.of(replace(hung, hung=())))]
+    loads, hung = acting.written, without_texts(acting)
+    nothing = acting.of(replace(hung.written, hung=()))
+    parts = [HeldLoads("loads", acting.of(written_out(loads)), nothing)]
     texts = [name for name, entries in loads.vectors if has_text(entries)]
     if loads.hung and texts:
         words = f"{' and '.join(texts)}, but for weight and buoyancy,"
-        parts.append(HeldLoads(words, acting.of(replace(loads, hung=())), acting.of(hung)))
+        parts.append(HeldLoads(words, acting.of(replace(loads, hung=())), hung))
     return parts

@@ -1,0 +1,64 @@
+"""Two families at once, chosen by the linear fits of both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.arcs import Evidence
+from taylor_verify.judge.causes.changed_equations import Equations
+from taylor_verify.judge.causes.fit import Family, across, both, orthonormal
+from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.settled import FEW
+
+# Numbers of both together, and the pairs that are tried: the best ones, a number counting as much as this.
+_NUMBERS: Final = 6
+_MOST: Final = 8
+_OF_A_NUMBER: Final = 3.0
+# A pair is tried if its linear fit leaves so little, where one of both alone leaves less than this.
+_LINEAR: Final = 0.15
+_ALONE: Final = 0.97
+# Kinds that are one class: no two of them make a pair.
+_OF_INERTIA: Final = dict.fromkeys(
+    ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
+)
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A family with its slopes at the right numbers, and the part that its linear fit leaves."""
+
+    family: Family
+    slopes: Floats
+    left: float
+
+    @property
+    def family_class(self) -> str:
+        """The class of its kind."""
+        return _OF_INERTIA.get(self.family.kind, self.family.kind)
+
+
+def likely_pairs(
+    linear: Sequence[Linear], evidence: Evidence, right: Equations
+) -> Iterator[Family]:
+    """Yield the best pairs of families of few numbers, as families."""
+    few = [each for each in linear if each.family.count <= FEW]
+    bases = [orthonormal(each.slopes * each.family.scale, 1e-6) for each in few]
+    rests = [across(basis, evidence.of_right.ravel()) for basis in bases]
+    tried = list[tuple[float, int, int]]()
+    for i, k in combinations(range(len(few)), 2):
+        one, other = few[i], few[k]
+        count = one.family.count + other.family.count
+        is_alone = min(one.left, other.left) > _ALONE
+        if one.family_class == other.family_class or count > _NUMBERS or is_alone:
+            continue
+        basis = orthonormal(bases[k] - bases[i] @ (bases[i].T @ bases[k]), 1e-9)
+        left = float(np.linalg.norm(across(basis, rests[i]))) / evidence.size
+        if left < _LINEAR:
+            tried.append((left * _OF_A_NUMBER**count, i, k))
+    for _, i, k in sorted(tried)[:_MOST]:
+        yield both(right, few[i].family, few[k].family)
