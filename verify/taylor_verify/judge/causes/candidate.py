@@ -66,9 +66,8 @@ class Candidate:
         for part in family.parts or (family,):
             places = slice(first, first + part.count)
             errors = () if self.errors is None else self.errors[places]
-            words.append(
-                with_numbers(part.name, part.labels, part.right, self.numbers[places], errors)
-            )
+            own = part.name, part.labels, part.right, self.numbers[places], errors
+            words.append(with_numbers(*own) if part.count else part.name)
             first += part.count
         return " and ".join(words)
 

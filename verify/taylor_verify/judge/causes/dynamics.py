@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 from typing import Any, Final
 
 import numpy as np
@@ -37,7 +38,7 @@ from taylor_verify.judge.causes.other_bodies import (
     faults_of_added_mass,
     faults_of_bodies,
 )
-from taylor_verify.judge.causes.pairs import Linear, likely_pairs
+from taylor_verify.judge.causes.pairs import Linear, likely_pairs, pairs_with_a_fault
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, ROUNDINGS, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FAIR, FEW, FIT_ROWS, NOTHING, PAIR, Choice
@@ -138,6 +139,8 @@ class Search:
         self.choice = Choice(answer, groups, self.floor)
         # A fault without numbers that leaves nothing of the whole answer, whatever it leaves of the arcs.
         self.proven = ""
+        # What each fault without numbers leaves of the defects, nearly.
+        self._left_by = list[tuple[Family, Floats]]()
 
     def cause(self, candidates: Iterable[Candidate], leaves: float = LEAVES) -> Cause | None:
         """Return the proven cause, with all others that explain as well."""
@@ -280,7 +283,9 @@ class Search:
         sets = [fault.changes(fault.right) for fault in faults]
         right, *every = evidence.coarse([{}, *sets])
         for fault, defects in zip(faults, every, strict=True):
-            if np.linalg.norm(evidence.of_right + defects - right) < 2 * _FAULT * evidence.size:
+            rest = evidence.of_right + defects - right
+            self._left_by.append((fault, rest))
+            if np.linalg.norm(rest) < 2 * _FAULT * evidence.size:
                 yield fault
 
     def fitted(self, families: Sequence[Family]) -> Iterator[Candidate]:
@@ -366,8 +371,11 @@ class Search:
                     yield candidate
 
     def _pairs(self, linear: Sequence[Linear]) -> Iterator[Candidate]:
-        """Yield two families at once, fitted."""
-        for family in likely_pairs(linear, self.evidence, self.answer.right):
+        """Yield two families at once, or a fault without numbers and a family, fitted."""
+        right = self.answer.right
+        pairs = likely_pairs(linear, self.evidence, right)
+        with_fault = pairs_with_a_fault(self._left_by, linear, self.evidence, right)
+        for family in chain(pairs, with_fault):
             fit = gauss_newton(self.evidence, family)
             if fit.size / self.evidence.size < max(PAIR, 3 * self.floor):
                 yield self._candidate(family, fit)

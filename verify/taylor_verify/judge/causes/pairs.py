@@ -22,6 +22,8 @@ _OF_A_NUMBER: Final = 3.0
 # A pair is tried if its linear fit leaves so little, where one of both alone leaves less than this.
 _LINEAR: Final = 0.15
 _ALONE: Final = 0.97
+# A fault and a family leave less than this part of what each of them leaves alone.
+_OF_BOTH: Final = 0.5
 # Kinds that are one class: no two of them make a pair.
 _OF_INERTIA: Final = dict.fromkeys(
     ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
@@ -39,7 +41,12 @@ class Linear:
     @property
     def family_class(self) -> str:
         """The class of its kind."""
-        return _OF_INERTIA.get(self.family.kind, self.family.kind)
+        return class_of(self.family)
+
+
+def class_of(family: Family) -> str:
+    """Return the class of a kind of faults."""
+    return _OF_INERTIA.get(family.kind, family.kind)
 
 
 def likely_pairs(
@@ -62,3 +69,34 @@ def likely_pairs(
             tried.append((left * _OF_A_NUMBER**count, i, k))
     for _, i, k in sorted(tried)[:_MOST]:
         yield both(right, few[i].family, few[k].family)
+
+
+def pairs_with_a_fault(
+    left_by: Sequence[tuple[Family, Floats]],
+    linear: Sequence[Linear],
+    evidence: Evidence,
+    right: Equations,
+) -> Iterator[Family]:
+    """Yield the best pairs of a fault without numbers and a family, by what a fault leaves of the defects.
+
+    Loads that both change as texts are no pair.
+    """
+    some = [(fault, rest.ravel()) for fault, rest in left_by if np.all(np.isfinite(rest))]
+    few = [each for each in linear if each.family.count <= _NUMBERS]
+    if not some or not few:
+        return
+    rests = np.stack([rest for _, rest in some], axis=1)
+    alone = np.linalg.norm(rests, axis=0) / evidence.size
+    tried = list[tuple[float, int, int]]()
+    for i, each in enumerate(few):
+        basis = orthonormal(each.slopes * each.family.scale, 1e-6)
+        left = np.linalg.norm(rests - basis @ (basis.T @ rests), axis=0) / evidence.size
+        for k in np.flatnonzero(
+            (left < _LINEAR) & (left < _OF_BOTH * np.minimum(alone, each.left))
+        ):
+            tried.append((float(left[k]) * _OF_A_NUMBER**each.family.count, i, int(k)))
+    for _, i, place in sorted(tried)[:_MOST]:
+        family, (fault, _) = few[i].family, some[place]
+        changed = fault.changes(fault.right).keys() & family.changes(family.right).keys()
+        if few[i].family_class != class_of(fault) and "acting" not in changed:
+            yield both(right, fault, family)
