@@ -1,0 +1,157 @@
+"""Causes of a part of the rows, of single rows, and of two faults at once of which one has no number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders.caused_rows import RIGID, TENSOR, TIMES, Array, Q, columns, rigid, rows, titles
+from builders.trajectories import QUATERNION, Columns
+from builders.turns import by_turns
+from scipy.spatial.transform import Rotation
+
+MOMENT = np.array([0.3, 0.45, -0.25])
+LOADED = RIGID.format(load=f"moment = {MOMENT.tolist()}")
+FREE = RIGID.format(load="")
+NAMES = ("w1", "w2", "w3")
+
+
+def table(made: Columns) -> Array:
+    return np.array([made[name] for name in (*NAMES, *QUATERNION)]).T
+
+
+def begun_late(at: float, moment: Array = 0 * MOMENT) -> Columns:
+    """A motion whose moment begins late, and is another one before."""
+    return rigid(moment=lambda t, w, q: MOMENT if t >= at else moment, edges=(at,))
+
+
+def with_rows(change: Callable[[Array], None]) -> Columns:
+    made = table(rigid())
+    change(made)
+    return columns(TIMES, made, NAMES)
+
+
+def turned_from(row: int) -> Callable[[Array], None]:
+    def change(made: Array) -> None:
+        later = Rotation.from_quat(np.roll(made[row:, 3:], -1, axis=1)) * Rotation.from_rotvec(
+            [0, 0, 0.2]
+        )
+        made[row:, 3:] = np.roll(later.as_quat(), 1, axis=1)
+
+    return change
+
+
+def sign_from(row: int) -> Callable[[Array], None]:
+    def change(made: Array) -> None:
+        made[row:, 2] *= -1
+
+    return change
+
+
+def sign_that_comes(row: int) -> Callable[[Array], None]:
+    """The other sign of an axis that is not at once: it grows from row to row."""
+
+    def change(made: Array) -> None:
+        made[row:, 2] *= np.linspace(1, -1, len(made) - row)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("text", "made", "words"),
+    by_turns(
+        [
+            (LOADED, lambda: begun_late(0.3), ["up to t = 0.3: moment left out"]),
+            (LOADED, lambda: begun_late(0.3, np.array([0.1, 0.4, 0.2])), []),
+            (
+                FREE,
+                lambda: with_rows(turned_from(40)),
+                [
+                    "from t = 4 on: attitude has body axes turned by a fixed rotation of 11.46 degrees"
+                ],
+            ),
+            (
+                FREE,
+                lambda: with_rows(sign_from(30)),
+                ["from t = 3 on: omega has the other sign on axis 3"],
+            ),
+            (FREE, lambda: with_rows(sign_that_comes(30)), None),
+        ],
+        5,
+        lambda text, made, words: not words,
+    ),
+)
+def test_a_part_of_the_run_has_its_own_cause(
+    text: str, made: Callable[[], Columns], words: Sequence[str] | None, tmp_path: Path
+) -> None:
+    """A load left out for three rows, or a convention from some row on, is named with its time."""
+    named = titles(tmp_path, text, made())
+    if words is None:
+        assert not any("other sign" in title for title in named)
+    else:
+        assert named == words
+
+
+def test_one_wrong_row_stands_out_of_the_simulators_own_errors(tmp_path: Path) -> None:
+    """Where omega is wrong in one row, an attitude off by 1e-11 in all rows is no other fault."""
+    made = table(rigid())
+    made[:, 3:] *= 1 + 3e-12 * np.random.default_rng(1).standard_normal((len(made), 4))
+    made[37, :3] *= 1.06
+    (title,) = titles(tmp_path, FREE, columns(TIMES, made, NAMES))
+    assert title.startswith("one row is wrong (first at t = 3.7)")
+
+
+def test_a_wrong_row_behind_slow_rows_is_no_interpolation(tmp_path: Path) -> None:
+    """A slow motion is nearly straight from row to row: that does not explain another row that is wrong."""
+    times = np.round(np.arange(0, 81) * 0.002, 6)
+    made = rows(
+        lambda t, w, q: np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w)),
+        [0.8, -0.5, 1.1],
+        Q,
+        times,
+        (),
+    )
+    made[79, :3] *= 1.5
+    text = FREE.replace("end = 8", "end = 0.16")
+    (title,) = titles(tmp_path, text, columns(times, made, NAMES))
+    assert title.startswith("one row is wrong")
+
+
+def test_rows_of_a_fast_motion_that_are_one_row_ahead_are_named(tmp_path: Path) -> None:
+    """A shift of a whole row is found by the rows themselves, however far the motion turns in one."""
+    times = np.append(TIMES, TIMES[-1] + TIMES[1]) * 8
+    law = lambda t, w, q: np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w))  # noqa: E731 (one line)
+    made = rows(law, [0.8, -0.5, 1.1], Q, times, ())
+    text = FREE.replace("end = 8", "end = 64")
+    own = columns(times[:-1], made[1:], NAMES)
+    assert titles(tmp_path, text, own) == ["rows shifted: row k holds the state of row k+1"]
+
+
+PRODUCTS = np.diag(np.diag(TENSOR))
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    by_turns(
+        [
+            (
+                lambda: rigid(gyro=0.0, moment=lambda t, w, q: np.array([0, 0.05, 0])),
+                ["no gyroscopic term and moment 2, body axes = 0.05"],
+            ),
+            (
+                lambda: rigid(PRODUCTS, moment=lambda t, w, q: np.array([0, 0, -0.07])),
+                ["products of inertia left out and moment 3, body axes = -0.07"],
+            ),
+            (lambda: rigid(PRODUCTS, moment=lambda t, w, q: -0.05 * w**3), []),
+        ],
+        3,
+        lambda made, words: not words,
+    ),
+)
+def test_a_fault_without_numbers_is_named_beside_one_with_a_number(
+    made: Callable[[], Columns], words: list[str], tmp_path: Path
+) -> None:
+    """A term left out and a load have both names; beside a drag of no family it has none."""
+    assert titles(tmp_path, FREE, made()) == words
