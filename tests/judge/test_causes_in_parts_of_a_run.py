@@ -121,10 +121,10 @@ def test_a_wrong_row_behind_slow_rows_is_no_interpolation(tmp_path: Path) -> Non
 
 def test_rows_of_a_fast_motion_that_are_one_row_ahead_are_named(tmp_path: Path) -> None:
     """A shift of a whole row is found by the rows themselves, however far the motion turns in one."""
-    times = np.append(TIMES, TIMES[-1] + TIMES[1]) * 8
+    times = np.append(TIMES, TIMES[-1] + TIMES[1]) * 20
     law = lambda t, w, q: np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w))  # noqa: E731 (one line)
     made = rows(law, [0.8, -0.5, 1.1], Q, times, ())
-    text = FREE.replace("end = 8", "end = 64")
+    text = FREE.replace("end = 8", "end = 160")
     own = columns(times[:-1], made[1:], NAMES)
     assert titles(tmp_path, text, own) == ["rows shifted: row k holds the state of row k+1"]
 

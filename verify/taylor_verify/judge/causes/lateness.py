@@ -33,10 +33,15 @@ def true_states(answer: Answer, count: int) -> Floats:
 
 
 def at_other_times(answer: Answer, states: Floats, late: Floats) -> Floats:
-    """Return the true motion so much later than at the rows, from the states there."""
-    own, rows = replace(answer, stepping=None), float(np.max(np.abs(late))) / answer.spacing
-    steps = max(1, ceil(_STEPS * rows))
-    return moved(own, answer.right, states, answer.times, late, steps)
+    """Return the true motion so much later than at the rows, each from the state of the nearest row."""
+    own, times = replace(answer, stepping=None), answer.times
+    when, onward = times + late, np.sign(times[-1] - times[0]) or 1.0
+    after = np.clip(np.searchsorted(onward * times, onward * when), 1, answer.count - 1)
+    is_before = np.abs(when - times[after - 1]) < np.abs(when - times[after])
+    near = np.where(is_before, after - 1, after)
+    spans = when - times[near]
+    steps = max(1, ceil(_STEPS * float(np.max(np.abs(spans))) / answer.spacing))
+    return moved(own, answer.right, states[:, :, near], times[near], spans, steps)
 
 
 def off_pace(answer: Answer) -> float:
