@@ -22,8 +22,8 @@ from taylor_verify.judge.causes.inexact_conventions import readings
 from taylor_verify.judge.causes.kinematics import kinematics
 from taylor_verify.judge.causes.numbers_and_states import in_numbers, in_states
 from taylor_verify.judge.causes.other_readings import attitudes, rates, with_omega
+from taylor_verify.judge.causes.parts_of_a_run import causes_in_pieces, of_part
 from taylor_verify.judge.causes.paths import contradicts
-from taylor_verify.judge.causes.pieces import causes_in_pieces, of_part
 from taylor_verify.judge.causes.proof import are_explained, left_of_all, may_leave, whole
 from taylor_verify.judge.causes.settled import PAIR
 from taylor_verify.judge.causes.spoiled_rows import are_saved_twice, wrong_rows
