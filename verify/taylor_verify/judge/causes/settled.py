@@ -32,8 +32,10 @@ PAIR: Final = 1e-4
 # What leaves so little leaves nothing.
 NOTHING: Final = 1e-9
 # A fault with numbers leaves no more than a fair simulator does, or noise, or its numbers, or what they
-# differ by, have so few digits: a law of another form fits nearly, and with numbers of no short form.
+# differ by, have so few digits: a law of another form fits nearly, and with numbers of no short form. Two
+# families with numbers fit it to one order more, as a damping and a load do where a body grows.
 FAIR: Final = 1e-6
+_FAIR_PAIR: Final = 1e-8
 _SHORT: Final = 2
 _DRAGS: Final = {"linear drag", "quadratic drag", "drag by the speed", "damping"}
 # Defects that noise may make, and how many candidates are tried that leave no more.
@@ -180,7 +182,8 @@ class Choice:
         """
         candidate, family = proven.candidate, proven.candidate.family
         are_drags = candidate.kind == "pair" and _DRAGS.issuperset(p.kind for p in family.parts)
-        least = NOTHING if are_drags else max(self._least, FAIR)
+        fair = _FAIR_PAIR if candidate.kind == "pair" and candidate.count > 1 else FAIR
+        least = NOTHING if are_drags else max(self._least, fair)
         if not candidate.count or proven.worst <= least:
             return True
         if not are_drags and self._leaves_noise(proven):
