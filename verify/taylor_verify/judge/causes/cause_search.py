@@ -59,8 +59,6 @@ def causes_of(answer: Answer) -> list[Cause]:
     undone = _undone(answer, by_group)
     if undone:
         return undone
-    if not by_group and (later := _read_from_some_row(answer)):
-        return later
     # The vectors of one quantity fail together, also where the error is that of one of them.
     largest = max((answer.worst[name] for name in by_group if name in answer.groups), default=0.0)
     slight = {name for name in answer.groups if answer.worst[name] < _SLIGHT * largest}
@@ -75,7 +73,8 @@ def causes_of(answer: Answer) -> list[Cause]:
         words = "omega contradicts the file's own attitude, which is right"
         return [*causes, Cause(words, "omega against attitude", {})]
     if not causes:
-        return _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
+        causes = _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
+        return causes or _read_from_some_row(answer)
     with suppress(Spent):
         causes += _of_motion(answer, moving, "attitude" in left)
     return causes

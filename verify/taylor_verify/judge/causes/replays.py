@@ -181,15 +181,17 @@ def steps_beside(
     return [each for each in _each_best(steps) if each.left < _BESIDE][:_METHODS]
 
 
-def nearest_count(left: Callable[[int], float], count: int, most: int) -> int:
+def nearest_count(
+    left: Callable[[int], float], count: int, most: int, walk: float = _NEARLY
+) -> int:
     """Return the number of steps that leaves the least, of those around one, and on from there.
 
-    What is left is asked as long as it falls: a first estimate may be far off where the error of a method
-    does not end with its steps.
+    Below ``walk`` what is left is asked as long as it falls: a first estimate may be far off where the
+    error of a method does not end with its steps.
     """
     best = min((k for k in (count - 1, count, count + 1) if 1 <= k <= most), key=left, default=most)
     onward = best - count
-    while onward and left(best) < _NEARLY and 1 <= best + onward <= most:
+    while onward and left(best) < walk and 1 <= best + onward <= most:
         if left(best + onward) >= left(best):
             break
         best += onward
@@ -231,9 +233,12 @@ class _Replays:
         defects = self._compared(self.arcs.defects(self.sets))
         for name, method in methods.items():
             fine = self._stepped(method, _fine(method), self.sets)
-            for place, count in self._near(method, defects, fine, near):
+            for place, counts in self._near(method, defects, fine, near):
                 left = cache(partial(self._left, method, place))
-                best = nearest_count(left, count, self._most(method))
+                # Beside families many numbers of steps leave about as much.
+                walk = 0.0 if self.bases else _NEARLY
+                some = [nearest_count(left, count, self._most(method), walk) for count in counts]
+                best = min(some, key=left)
                 yield Steps(name, method, best, left(best))
 
     def _left(self, method: Method, place: int, count: int) -> float:
@@ -249,7 +254,7 @@ class _Replays:
 
     def _near(
         self, method: Method, defects: Floats, rests: Floats, near: float
-    ) -> Iterator[tuple[int, int]]:
+    ) -> Iterator[tuple[int, list[int]]]:
         """Yield each place with numbers of steps by which the error of the method is about the defects.
 
         Much finer steps than those measured are measured once more: the first-order term alone misses them.
@@ -260,8 +265,8 @@ class _Replays:
             if _MUCH_FINER * _fine(method) < steps <= self._most(method):
                 (finer,) = self._stepped(method, steps, [self.sets[place]])
                 counts = self._counts(method, place, own, own - finer, near, steps) or counts
-            some = {max(1, count) for count in counts if count <= self._most(method) + 1}
-            yield from ((place, count) for count in sorted(some))
+            if some := [max(1, count) for count in counts if count <= self._most(method) + 1]:
+                yield place, some
 
     def _counts(
         self, method: Method, place: int, defects: Floats, error: Floats, near: float, steps: int
