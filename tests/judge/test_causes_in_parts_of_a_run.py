@@ -33,21 +33,14 @@ def with_rows(change: Callable[[Array], None]) -> Columns:
     return columns(TIMES, made, NAMES)
 
 
-def turned_from(row: int) -> Callable[[Array], None]:
-    def change(made: Array) -> None:
-        later = Rotation.from_quat(np.roll(made[row:, 3:], -1, axis=1)) * Rotation.from_rotvec(
-            [0, 0, 0.2]
-        )
-        made[row:, 3:] = np.roll(later.as_quat(), 1, axis=1)
-
-    return change
+def turned_on(made: Array) -> None:
+    turn = Rotation.from_rotvec([0, 0, 0.2])
+    later = Rotation.from_quat(np.roll(made[40:, 3:], -1, axis=1)) * turn
+    made[40:, 3:] = np.roll(later.as_quat(), 1, axis=1)
 
 
-def sign_from(row: int) -> Callable[[Array], None]:
-    def change(made: Array) -> None:
-        made[row:, 2] *= -1
-
-    return change
+def turned_round(made: Array) -> None:
+    made[30:, 2] *= -1
 
 
 @pytest.mark.parametrize(
@@ -58,14 +51,14 @@ def sign_from(row: int) -> Callable[[Array], None]:
             (LOADED, lambda: begun_late(0.3, np.array([0.1, 0.4, 0.2])), []),
             (
                 FREE,
-                lambda: with_rows(turned_from(40)),
+                lambda: with_rows(turned_on),
                 [
                     "from t = 4 on: attitude has body axes turned by a fixed rotation of 11.46 degrees"
                 ],
             ),
             (
                 FREE,
-                lambda: with_rows(sign_from(30)),
+                lambda: with_rows(turned_round),
                 ["from t = 3 on: omega has the other sign on axis 3"],
             ),
         ],

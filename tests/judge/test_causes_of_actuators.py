@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.caused_rows import RIGID, TENSOR, TIMES, Array, Q, columns, rows, titles
+from builders.caused_rows import RIGID, TENSOR, TIMES, Array, Law, Q, columns, rows, titles
+from builders.scenes import text_of
 from builders.turns import by_turns
 from builders.wrong_dynamics import explained_motion
 
@@ -18,22 +19,13 @@ from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
-BODY = """
-title = "Controller"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [[1.9, 0.1, 0.05], [0.1, 2.4, -0.2], [0.05, -0.2, 1.5]]
-moment = ["-2.4*q1 - 3*w1", "-2.4*q2 - 3*w2", "-2.4*q3 - 3*w3"]
-[initial]
-omega = [0.8, -0.5, 0.6]
-attitude = [0.3, 0.6, -0.5, 0.55]
-[time]
-end = 4
-samples = 41
-"""
 TEXTS = [f"-2.4*q{i} - 3*w{i}" for i in (1, 2, 3)]
-LINE = BODY[BODY.index("moment") : BODY.index("[initial]")]
+BODY = text_of(
+    {"moment": TEXTS, "inertia": [[1.9, 0.1, 0.05], [0.1, 2.4, -0.2], [0.05, -0.2, 1.5]]},
+    {"omega": [0.8, -0.5, 0.6], "attitude": [0.3, 0.6, -0.5, 0.55]},
+    *(4, 41, "omega", "attitude"),
+)
+LINE = next(line for line in BODY.splitlines() if line.startswith("moment"))
 
 
 @cache
@@ -55,7 +47,7 @@ def sentences(changed: str) -> list[str]:
 
 def with_moment(texts: Sequence[str], more: str = "") -> str:
     listed = ", ".join(f'"{text}"' for text in texts)
-    return BODY.replace(LINE, f"moment = [{listed}]\n{more}\n")
+    return BODY.replace(LINE, f"moment = [{listed}]") + more
 
 
 def limited(*limits: float) -> str:
@@ -126,18 +118,15 @@ CONSTANT = np.array([0.3, 0.45, -0.25])
 def cleared(steps: int, less: float = 0.0) -> Array:
     """The states under a moment of the first of so many steps of each row, and a part of it in the rest."""
     z, made = np.array([0.8, -0.5, 1.1, *Q]), [np.array([0.8, -0.5, 1.1, *Q])]
-    for _ in TIMES[1:]:
-        for part, moment in ((1 / steps, CONSTANT), (1 - 1 / steps, less * CONSTANT)):
-            moved = rows(
-                partial(rates, moment), z[:3].tolist(), z[3:], np.array([0, 0.1 * part]), ()
-            )
-            z = moved[-1]
+    for part, of in [(1 / steps, 1.0), (1 - 1 / steps, less)] * (len(TIMES) - 1):
+        law: Law = lambda t, w, q, of=of: spin(w, of)  # noqa: E731 (a law of one line)
+        z = rows(law, z[:3].tolist(), z[3:], np.array([0, 0.1 * part]), ())[-1]
         made.append(z)
-    return np.array(made)
+    return np.array(made[::2])
 
 
-def rates(moment: Array, t: float, w: Array, q: Array) -> Array:
-    return np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w) + moment)
+def spin(w: Array, of: float) -> Array:
+    return np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w) + of * CONSTANT)
 
 
 @pytest.mark.parametrize(

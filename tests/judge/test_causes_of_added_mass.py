@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.caused_rows import Array, Law, columns, rows, titles
+from builders.scenes import text_of
 from builders.trajectories import Columns
 from builders.turns import by_turns
 
@@ -16,22 +17,12 @@ from taylor_verify.judge.causes.fitted_bodies import nearest_factor
 from taylor_verify.judge.causes.material import equations_of
 from taylor_verify.scenes.reading.reader import read
 
-VEHICLE = """
-title = "Vehicle"
-model = "kirchhoff"
-track = ["attitude"]
-[body]
-mass = 31.9
-inertia = [0.12, 4.2, 4.2]
-centre_of_mass = [0, 0, 0.02]
-added_mass = [0.86, 30.3, 28.3, 0.035, 3.6, 3.5]
-[initial]
-linear_velocity = [1.5, 0.1, -0.05]
-angular_velocity = [0.05, 0.1, 0.15]
-[time]
-end = 3
-samples = 61
-"""
+VEHICLE = text_of(
+    {"mass": 31.9, "inertia": [0.12, 4.2, 4.2], "centre_of_mass": [0, 0, 0.02]}
+    | {"added_mass": [0.86, 30.3, 28.3, 0.035, 3.6, 3.5]},
+    {"linear_velocity": [1.5, 0.1, -0.05], "angular_velocity": [0.05, 0.1, 0.15]},
+    *(3, 61, "attitude"),
+)
 
 
 def crossed(v: Array) -> Array:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from builders.caused_rows import Array, columns, rows, titles
 from builders.integrators import step
+from builders.scenes import text_of
 from builders.trajectories import Columns
 from builders.turns import by_turns
 from builders.wrong_dynamics import turned
@@ -130,22 +131,12 @@ def test_a_method_of_two_steps_is_named(
 
 # A vehicle whose added mass acts by accelerations that are known already.
 
-VEHICLE = """
-title = "Vehicle"
-model = "kirchhoff"
-track = ["attitude"]
-[body]
-mass = 30.0
-inertia = [0.5, 2.0, 2.2]
-centre_of_mass = [0, 0, 0]
-added_mass = [4.0, 9.0, 8.0, 0.05, 0.4, 0.5]
-[initial]
-linear_velocity = [1.5, 0.3, -0.25]
-angular_velocity = [0.3, 0.5, 0.4]
-[time]
-end = 2
-samples = 41
-"""
+VEHICLE = text_of(
+    {"mass": 30, "inertia": [0.5, 2, 2.2], "added_mass": [4, 9, 8, 0.05, 0.4, 0.5]}
+    | {"centre_of_mass": [0, 0, 0]},
+    {"linear_velocity": [1.5, 0.3, -0.25], "angular_velocity": [0.3, 0.5, 0.4]},
+    *(2, 41, "attitude"),
+)
 OWN = np.diag([30.0, 30, 30, 0.5, 2.0, 2.2])
 ADDED = np.diag([4.0, 9.0, 8.0, 0.05, 0.4, 0.5])
 ORDERLY = "added mass by the acceleration of the step before, explicit Euler"
