@@ -71,7 +71,8 @@ def causes_of(answer: Answer) -> list[Cause]:
     moving = [name for name in left if name in answer.groups]
     if moving and _is_attitude_right(answer, by_group) and _contradicts(answer, moving):
         words = "omega contradicts the file's own attitude, which is right"
-        return [*causes, Cause(words, "omega against attitude", {})]
+        contradiction = Cause(words, "omega against attitude", {})
+        return [*causes, *(_read_from_some_row(answer) or [contradiction])]
     if not causes:
         causes = _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
         return causes or _read_from_some_row(answer)
