@@ -179,7 +179,7 @@ def _counts_of_short_numbers(fit: Fitted, spacing: float) -> list[int]:
     """
     number, counts = float(fit.numbers[0]), list[int]()
     error = 0.0 if fit.errors is None else float(fit.errors[0])
-    near = max(_SURELY, _ERRORS * error / abs(number))
+    near = max(_SURELY, _ERRORS * error / abs(number)) if number else np.inf
     of_row = _FIRST[2](number, spacing)
     for count in range(1, _MOST + 1) if of_row > 0 and near < _SURE_ENOUGH else ():
         factor, h = of_row ** (1 / count), spacing / count

@@ -75,14 +75,21 @@ class HeldLoads:
         taken, every = self.taken.written, Fraction(h).limit_denominator(10**6)
         names = {name: f"{name}_held" for name, _ in taken.vectors}
         vectors = tuple((n, tuple(f"{own}{i}" for i in (1, 2, 3))) for n, own in names.items())
-        states = list[Held]()
-        for (name, entries), first in zip(taken.vectors, self._first(answer), strict=True):
-            state = Held(names[name], None, entries, every, Fraction(0), is_vector=True)
-            if self.late:
-                state = replace(state, name=f"{name}_now", start=first)
-                later = replace(state, name=names[name], start=None, value=state.components)
-                states.append(later)
-            states.append(state)
+        states = [
+            Held(names[name], None, entries, every, Fraction(0), is_vector=True)
+            for name, entries in taken.vectors
+        ]
+        if self.late:
+            now = [
+                replace(state, name=f"{name}_now", start=first)
+                for state, (name, _), first in zip(
+                    states, taken.vectors, self._first(answer), strict=True
+                )
+            ]
+            states = [
+                *(replace(s, value=n.components) for s, n in zip(states, now, strict=True)),
+                *now,
+            ]
         other = replace(self.others.written, vectors=vectors, states=tuple(states))
         return {"acting": self.taken.of(other)} if next(other.faults(), None) is None else {}
 
