@@ -14,7 +14,7 @@ from taylor_verify.judge.causes.many_flows import Floats, cubic
 
 _BAD: Final = 30.0
 # A simulator has errors of its own: those below this part of the largest one.
-_OWN: Final = 1e-9
+_OWN: Final = 1e-6
 _FEWEST: Final = 4
 _ONE_IN: Final = 20
 _MOST_BETWEEN: Final = 12
