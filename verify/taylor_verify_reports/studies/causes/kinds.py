@@ -340,7 +340,9 @@ SIMPLE: Final = (
         ("times",),
         _at(lambda s, d, e: s.times + 4e-4 * d.uniform(-1, 1, len(s.times)) * (s.times > 0)),
     ),
-    Kind("early clock", ("early", "another start", "row k"), _at(lambda s, d, e: s.times + 0.3 * e)),
+    Kind(
+        "early clock", ("early", "another start", "row k"), _at(lambda s, d, e: s.times + 0.3 * e)
+    ),
     Kind("row repeated", ("repeat",), _repeated),
     Kind("linear interpolation", ("interpolation",), _interpolated),
     Kind("explicit Euler", ("explicit Euler", "attitude turned by"), by(euler, begin)),
