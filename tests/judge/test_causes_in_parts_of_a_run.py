@@ -74,7 +74,7 @@ def test_a_part_of_the_run_has_its_own_cause(
 
 
 def test_one_wrong_row_stands_out_of_the_simulators_own_errors(tmp_path: Path) -> None:
-    """Where omega is wrong in one row, an attitude off by 1e-11 in all rows is no other fault."""
+    """An attitude off by 1e-11 in all rows is no fault beside omega that is wrong in one."""
     made = table(rigid())
     made[:, 3:] *= 1 + 3e-12 * np.random.default_rng(1).standard_normal((len(made), 4))
     made[37, :3] *= 1.06

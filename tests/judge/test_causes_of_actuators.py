@@ -96,7 +96,7 @@ OWN = (-2.4 * q[1:] - 3 * np.array([0.8, -0.5, 0.6])).tolist()
     ),
 )
 def test_what_an_actuator_does_is_named(changed: str, words: str | None) -> None:
-    """One limit, or values of the step before, have their names; three limits or two steps have none."""
+    """A limit, or values of the step before, have their names; three limits or two steps have none."""
     assert [each.partition("; leaves")[0] for each in sentences(changed)] == (
         [] if words is None else [words]
     )

@@ -15,6 +15,7 @@ from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.float_answer import Answer, velocities_of
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.models.acting import Acting
+from taylor_verify.numbers.tensors import ZERO_VECTOR
 
 # Parts of the largest load at which the fit of a limit begins.
 _BEGINS: Final = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.92)
@@ -41,7 +42,7 @@ def new_limits(answer: Answer) -> Iterator[tuple[Family, Floats]]:
 def _sizes(answer: Answer, acting: Acting, name: str) -> Floats:
     """Return the sizes of a vector of texts at the rows of the file."""
     loads, right = acting.written, answer.right
-    vectors = tuple((n, own if n == name else ("0", "0", "0")) for n, own in loads.vectors)
+    vectors = tuple((n, own if n == name else ZERO_VECTOR) for n, own in loads.vectors)
     alone = acting.of(replace(loads, vectors=vectors, hung=()))
     z, nu = answer.states(right.coupled).T[None], velocities_of(right, answer.file.v).T[None]
     only = replace(right, acting=alone, load=np.zeros(right.size))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from itertools import product
 from typing import Any, Final
 
@@ -125,13 +126,15 @@ def late_methods(acting: Acting) -> dict[str, Method]:
     }
 
 
+@lru_cache(maxsize=8)
 def without_texts(acting: Acting) -> Acting:
     """Return weight and buoyancy alone, of all loads."""
     nothing = tuple((name, ZERO_VECTOR) for name, _ in acting.written.vectors)
     return acting.of(replace(acting.written, vectors=nothing))
 
 
-def _parts(acting: Acting) -> list[HeldLoads]:
+@lru_cache(maxsize=8)
+def _parts(acting: Acting) -> tuple[HeldLoads, ...]:
     loads, hung = acting.written, without_texts(acting)
     nothing = acting.of(replace(hung.written, hung=()))
     parts = [HeldLoads("loads", acting.of(written_out(loads)), nothing)]
@@ -139,4 +142,4 @@ def _parts(acting: Acting) -> list[HeldLoads]:
     if loads.hung and texts:
         words = f"{' and '.join(texts)}, but for weight and buoyancy,"
         parts.append(HeldLoads(words, acting.of(replace(loads, hung=())), hung))
-    return parts
+    return tuple(parts)

@@ -12,6 +12,8 @@ from taylor_verify_reports.studies.causes.stepping import Draw, Make
 
 RIGID: Final = ("free", "moment", "wheels")
 FLUID: Final = ("fluid", "momenta")
+# Files of momenta have no omega.
+WITH_RATES: Final = (*RIGID, "fluid")
 
 
 @dataclass(frozen=True)

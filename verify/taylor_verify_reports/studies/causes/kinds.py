@@ -13,7 +13,14 @@ from typing import Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
-from taylor_verify_reports.studies.causes.kind import FLUID, RIGID, Kind, of, right, setting
+from taylor_verify_reports.studies.causes.kind import (
+    FLUID,
+    WITH_RATES,
+    Kind,
+    of,
+    right,
+    setting,
+)
 from taylor_verify_reports.studies.causes.kinds_of_loads import OF_LOADS
 from taylor_verify_reports.studies.causes.kinds_of_rows import AT_WHOLE_STEPS, LATER, OF_ROWS
 from taylor_verify_reports.studies.causes.kinds_of_steps import DAMPING_STEP, OF_STEPS
@@ -327,10 +334,10 @@ SIMPLE: Final = (
     Kind("own start", ("another start",), _own_start),
     Kind("jump", ("jump", "first two rows"), _jump),
     Kind("asleep", ("at rest", "all velocities are 0"), _asleep),
-    Kind("sign of an axis", ("other sign on axis", "contradicts"), _sign, (*RIGID, "fluid")),
+    Kind("sign of an axis", ("other sign on axis", "contradicts"), _sign, WITH_RATES),
     Kind("bias", ("constant offset",), _bias),
-    Kind("degrees", ("degrees",), _degrees, (*RIGID, "fluid")),
-    Kind("space axes", ("space axes",), _space_axes, (*RIGID, "fluid")),
+    Kind("degrees", ("degrees",), _degrees, WITH_RATES),
+    Kind("space axes", ("space axes",), _space_axes, WITH_RATES),
     Kind("conjugate", ("conjugate", "transposed"), _conjugate),
     Kind("scalar last", ("scalar last",), _scalar_last),
     Kind("space frame turned", ("fixed rotation", "space axes turned"), _space_turned),
@@ -350,8 +357,8 @@ SIMPLE: Final = (
     Kind("Heun", ("Heun", "attitude turned by"), by(heun, mean)),
     Kind("RK4", ("RK4", "attitude turned by"), by(rk4, mean)),
     Kind("held rate of the attitude", ("attitude turned by",), held_rate),
-    Kind("attitude backwards", ("backwards", "turns by"), _backwards, (*RIGID, "fluid")),
-    Kind("attitude on the wrong side", ("wrong axes",), _wrong_side, (*RIGID, "fluid")),
+    Kind("attitude backwards", ("backwards", "turns by"), _backwards, WITH_RATES),
+    Kind("attitude on the wrong side", ("wrong axes",), _wrong_side, WITH_RATES),
     Kind("two faults", ("damping", *_LOADS), of(_two)),
     Kind(
         "a fault and Euler steps",
@@ -364,7 +371,7 @@ SIMPLE: Final = (
     Kind("noise", ("contradicts",), _noise),
     Kind("attitude in place", ("in place",), in_place),
     Kind("product in the Coriolis terms", ("C_", "Coriolis"), of(_coriolis_product), FLUID),
-    Kind("frame that turns", ("frame that turns",), _turning_frame, (*RIGID, "fluid")),
+    Kind("frame that turns", ("frame that turns",), _turning_frame, WITH_RATES),
     Kind("tensor in space axes", ("space axes",), _tensor_in_space, ("free",)),
     Kind("RK45 at 1e-4", (), _coarse("RK45", 1e-4)),
     Kind("RK45 at 1e-7", (), _coarse("RK45", 1e-7)),

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
-from taylor_verify_reports.studies.causes.kind import RIGID, Kind, of, right
+from taylor_verify_reports.studies.causes.kind import WITH_RATES, Kind, of, right
 from taylor_verify_reports.studies.causes.simulated import (
     Law,
     Rows,
@@ -22,8 +22,6 @@ from taylor_verify_reports.studies.causes.simulated import (
 from taylor_verify_reports.studies.causes.stepping import Draw, Make
 
 _WITH_PATH: Final = ("fluid",)
-# Files of momenta have no omega.
-_WITH_RATES: Final = (*RIGID, *_WITH_PATH)
 _PACES: Final = (1 / 24, 1 / 60, 1 / 240, 24.0, 60.0)
 
 
@@ -191,10 +189,10 @@ OF_ROWS: Final = (
     Kind("rows dropped", ("rows dropped", "jump"), _dropped),
     Kind("rows saved twice", ("saved twice", "repeat", "held"), _changed(_twice)),
     Kind("one row wrong", ("one row is wrong",), _changed(_outlier)),
-    Kind("body frame turned", _AXES, _changed(_body_turned), _WITH_RATES),
-    Kind("rates of Euler angles", ("rates of Euler angles",), _changed(_of_angles), _WITH_RATES),
-    Kind("axes exchanged", ("other axes", "contradicts"), _changed(_exchanged), _WITH_RATES),
-    Kind("scale of an axis", ("has factors", "contradicts"), _changed(_scaled), _WITH_RATES),
+    Kind("body frame turned", _AXES, _changed(_body_turned), WITH_RATES),
+    Kind("rates of Euler angles", ("rates of Euler angles",), _changed(_of_angles), WITH_RATES),
+    Kind("axes exchanged", ("other axes", "contradicts"), _changed(_exchanged), WITH_RATES),
+    Kind("scale of an axis", ("has factors", "contradicts"), _changed(_scaled), WITH_RATES),
     Kind("velocity of another point", ("another point",), _changed(_other_point), _WITH_PATH),
     Kind("constant current", ("moving frame", "drifts"), _changed(_moving_frame), _WITH_PATH),
     Kind("depth upward", ("other sign on axis 3",), _path(_depth), _WITH_PATH, has_centre=True),

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
-from taylor_verify_reports.studies.causes.kind import RIGID, Kind
+from taylor_verify_reports.studies.causes.kind import RIGID, WITH_RATES, Kind
 from taylor_verify_reports.studies.causes.simulated import Rows, law, stepped, turned
 from taylor_verify_reports.studies.causes.stepping import (
     Draw,
@@ -125,7 +125,7 @@ _IN_PLACE: Final = "components updated in place"
 _HELD: Final = ("q + h q omega / 2 with the rate at the begin",)
 OF_STEPS: Final = (
     *(Kind(name, (name, "attitude turned by"), by(step, mean)) for name, step in _STEPS.items()),
-    Kind(_IN_PLACE, (_IN_PLACE, "attitude turned by"), by(_in_turn, mean), (*RIGID, "fluid")),
+    Kind(_IN_PLACE, (_IN_PLACE, "attitude turned by"), by(_in_turn, mean), WITH_RATES),
     Kind(
         "momentum turned",
         ("momentum turned", "attitude turned by"),
