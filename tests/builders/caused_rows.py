@@ -99,3 +99,7 @@ def rigid(
         edges,
     )
     return columns(TIMES, made, ("w1", "w2", "w3"))
+
+
+def table(made: Columns) -> Array:
+    return np.array([made[name] for name in ("w1", "w2", "w3", *QUATERNION)]).T

@@ -18,6 +18,7 @@ from builders.caused_rows import (
     causes,
     columns,
     rigid,
+    table,
     titles,
 )
 from builders.trajectories import (
@@ -148,10 +149,6 @@ def test_a_part_of_the_run_has_its_cause(
     named_ones = titles(tmp_path, RIGID.format(load=load), rigid(moment=moment, edges=edges))
     assert len(named_ones) == len(words)
     assert all(title.startswith(own) for title, own in zip(named_ones, words, strict=True))
-
-
-def table(made: Columns) -> Array:
-    return np.array([made[name] for name in ("w1", "w2", "w3", *QUATERNION)]).T
 
 
 def held(made: Columns) -> Columns:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.caused_rows import RIGID, TENSOR, TIMES, Array, Q, columns, rigid, rows, titles
-from builders.trajectories import QUATERNION, Columns
+from builders.caused_rows import RIGID, TENSOR, TIMES, Array, Q, columns, rigid, rows, table, titles
+from builders.trajectories import Columns
 from builders.turns import by_turns
 from scipy.spatial.transform import Rotation
 
@@ -16,10 +16,6 @@ MOMENT = np.array([0.3, 0.45, -0.25])
 LOADED = RIGID.format(load=f"moment = {MOMENT.tolist()}")
 FREE = RIGID.format(load="")
 NAMES = ("w1", "w2", "w3")
-
-
-def table(made: Columns) -> Array:
-    return np.array([made[name] for name in (*NAMES, *QUATERNION)]).T
 
 
 def begun_late(at: float, moment: Array = 0 * MOMENT) -> Columns:
@@ -93,12 +89,11 @@ def test_a_wrong_row_behind_slow_rows_is_no_interpolation(tmp_path: Path) -> Non
         (),
     )
     made[79, :3] *= 1.5
-    text = FREE.replace("end = 8", "end = 0.16")
-    (title,) = titles(tmp_path, text, columns(times, made, NAMES))
+    (title,) = titles(tmp_path, FREE.replace("end = 8", "end = 0.16"), columns(times, made, NAMES))
     assert title.startswith("one row is wrong")
 
 
-PRODUCTS = np.diag(np.diag(TENSOR))
+DIAGONAL = np.diag(np.diag(TENSOR))
 
 
 @pytest.mark.parametrize(
@@ -110,10 +105,10 @@ PRODUCTS = np.diag(np.diag(TENSOR))
                 ["no gyroscopic term and moment 2, body axes = 0.05"],
             ),
             (
-                lambda: rigid(PRODUCTS, moment=lambda t, w, q: np.array([0, 0, -0.07])),
+                lambda: rigid(DIAGONAL, moment=lambda t, w, q: np.array([0, 0, -0.07])),
                 ["products of inertia left out and moment 3, body axes = -0.07"],
             ),
-            (lambda: rigid(PRODUCTS, moment=lambda t, w, q: -0.05 * w**3), []),
+            (lambda: rigid(DIAGONAL, moment=lambda t, w, q: -0.05 * w**3), []),
         ],
         3,
         lambda made, words: not words,

@@ -19,6 +19,7 @@ from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
+OWN_Q = np.array([0.3, 0.6, -0.5, 0.55]) / np.linalg.norm([0.3, 0.6, -0.5, 0.55])
 TEXTS = [f"-2.4*q{i} - 3*w{i}" for i in (1, 2, 3)]
 BODY = text_of(
     {"moment": TEXTS, "inertia": [[1.9, 0.1, 0.05], [0.1, 2.4, -0.2], [0.05, -0.2, 1.5]]},
@@ -40,9 +41,9 @@ def sentences(changed: str) -> list[str]:
     v = np.array([[float(x) for x in row] for row in moved["omega"]])
     turns = [[[float(x) for x in row] for row in R] for R in moved["attitude"]]
     unit = steady_signs(quaternion_columns(np.array(turns)))
-    q = unit * np.sign(unit[0] @ np.array(own.initial.attitude, dtype=float))
-    rows_ = Motion(np.round(v, 10), np.round(q, 10))
-    return [cause.sentence for cause in explained_motion(own, rows_).causes]
+    q = unit * np.sign(unit[0] @ OWN_Q)
+    explained = explained_motion(own, Motion(np.round(v, 10), np.round(q, 10)))
+    return [cause.sentence for cause in explained.causes]
 
 
 def with_moment(texts: Sequence[str], more: str = "") -> str:
@@ -70,10 +71,8 @@ def late(start: Sequence[float], every: str = "1/20", steps: int = 1) -> str:
     return with_moment([f"m{steps}{i}" for i in (1, 2, 3)], "\n".join(["[states]", *held]))
 
 
-FIRST = [1, 1, 1]
-# The moment at the start, where q has unit length.
-q = np.array([0.3, 0.6, -0.5, 0.55]) / np.linalg.norm([0.3, 0.6, -0.5, 0.55])
-OWN = (-2.4 * q[1:] - 3 * np.array([0.8, -0.5, 0.6])).tolist()
+# The moment at the start.
+OWN = (-2.4 * OWN_Q[1:] - 3 * np.array([0.8, -0.5, 0.6])).tolist()
 
 
 @pytest.mark.parametrize(
@@ -89,7 +88,7 @@ OWN = (-2.4 * q[1:] - 3 * np.array([0.8, -0.5, 0.6])).tolist()
                 "loads taken every 0.05, used one step late but for the first step and held in between",
             ),
             (late([0, 0, 0], steps=2), None),
-            (late(FIRST), None),
+            (late([1, 1, 1]), None),
         ],
         7,
         lambda changed, words: words is None,
@@ -97,9 +96,8 @@ OWN = (-2.4 * q[1:] - 3 * np.array([0.8, -0.5, 0.6])).tolist()
 )
 def test_what_an_actuator_does_is_named(changed: str, words: str | None) -> None:
     """A limit, or values of the step before, have their names; three limits or two steps have none."""
-    assert [each.partition("; leaves")[0] for each in sentences(changed)] == (
-        [] if words is None else [words]
-    )
+    named = [each.partition("; leaves")[0] for each in sentences(changed)]
+    assert named == ([] if words is None else [words])
 
 
 def test_a_cause_of_a_late_moment_is_a_scene_that_moves_so() -> None:
@@ -115,7 +113,7 @@ def test_a_cause_of_a_late_moment_is_a_scene_that_moves_so() -> None:
 CONSTANT = np.array([0.3, 0.45, -0.25])
 
 
-def cleared(steps: int, less: float = 0.0) -> Array:
+def cleared(steps: int, less: float) -> Array:
     """The states under a moment of the first of so many steps of each row, and a part of it in the rest."""
     z, made = np.array([0.8, -0.5, 1.1, *Q]), [np.array([0.8, -0.5, 1.1, *Q])]
     for part, of in [(1 / steps, 1.0), (1 - 1 / steps, less)] * (len(TIMES) - 1):
@@ -130,18 +128,18 @@ def spin(w: Array, of: float) -> Array:
 
 
 @pytest.mark.parametrize(
-    ("steps", "less", "words"),
+    ("less", "words"),
     [
-        (4, 0.0, ["the loads act in the first of 4 steps from row to row, and not in the others"]),
-        (4, 0.3, []),
+        (0.0, ["the loads act in the first of 4 steps from row to row, and not in the others"]),
+        (0.3, []),
     ],
 )
 def test_loads_that_are_cleared_within_a_row_are_named(
-    steps: int, less: float, words: list[str], tmp_path: Path
+    less: float, words: list[str], tmp_path: Path
 ) -> None:
     """A moment of the first of four steps has its name; one that goes on with less has none."""
     text = RIGID.format(load=f"moment = {CONSTANT.tolist()}")
-    made = columns(TIMES, cleared(steps, less=less), ("w1", "w2", "w3"))
+    made = columns(TIMES, cleared(4, less), ("w1", "w2", "w3"))
     assert titles(tmp_path, text, made) == words
 
 
@@ -155,7 +153,7 @@ def test_a_motion_that_runs_away_has_the_cause_of_its_first_rows() -> None:
         moment = -2.4 * q[1:] - 3 * w
         return np.linalg.solve(tensor, np.cross(tensor @ w, w) + moment * [1, 1, -1])
 
-    made = rows(law, [0.8, -0.5, 0.6], q, times, ())
+    made = rows(law, [0.8, -0.5, 0.6], OWN_Q, times, ())
     (cause,) = explained_motion(own, Motion(made[:, :3], made[:, 3:])).causes
     assert np.max(np.abs(made[:, :3])) > 1e3
     assert cause.sentence.startswith("up to t = ")
