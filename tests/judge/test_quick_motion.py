@@ -1,4 +1,4 @@
-"""The motion in float64 from known rows: right at other times, and at a price that the motion explains."""
+"""The motion in float64 from known rows: right at other times, and to the last digit beside a row."""
 
 from __future__ import annotations
 
@@ -8,68 +8,66 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from taylor_verify.exact.rates import float_flow
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.quick_motion import QuickMotion
+from taylor_verify.judge.errors.quick_motion import QuickMotion
+from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
 
 DIGITS = 25
 # It starts in a slow moment of its turn, and is eight times as quick three seconds before.
 SLOW_START = str(Path(__file__).parent / "cases" / "remus_path.toml")
 
 
-@pytest.mark.parametrize("name", ["euler/backward", "kirchhoff/whole-motion"])
+def quick_from(scene: Scene, rows: list[int]) -> QuickMotion:
+    """The motion from some of a scene's rows."""
+    elapsed = [scene.clock.elapsed[k] for k in rows]
+    known = solution(scene).motion(elapsed, DIGITS).quantities
+    return QuickMotion(float_flow(scene), known, in_units(scene, elapsed))
+
+
+def in_units(scene: Scene, times: list[Fraction]) -> np.ndarray:
+    unit = power_of_two(float_flow(scene).time)
+    return np.array([float(t / unit) for t in times])
+
+
+@pytest.mark.parametrize("name", ["euler/backward", "kirchhoff/whole-motion", SLOW_START])
 @pytest.mark.parametrize("rows", [[0], [0, 3], [2, 5, 9]])
 def test_float64_follows_the_motion_from_few_rows(name: str, rows: list[int]) -> None:
-    """Between rows that are many turns apart, and beyond them, it is the exact motion to five digits."""
+    """Between rows that are many turns apart, and beyond them, it is the exact motion to seven digits."""
     scene = load(name)
-    exact = solution(scene)
-    known = exact.motion(scene.clock.elapsed, DIGITS).at(rows)
-    since = np.array([float(scene.clock.elapsed[k]) for k in rows])
-    quick = QuickMotion(scene, known.quantities, since)
-    end = scene.clock.elapsed[-1]
+    quick, flow = quick_from(scene, rows), float_flow(scene)
+    end = scene.clock.elapsed[max(rows) + 1]
     for share in (Fraction(-1, 7), Fraction(3, 10), Fraction(9, 8)):
         times = [end * share, end * share / 3]
-        truth, near = exact.motion(times, DIGITS), quick.at(np.array([float(t) for t in times]))
-        for quantity, exactly in truth.quantities.items():
+        states = quick.at(in_units(scene, times))
+        assert states is not None
+        near = flow.quantities(states)
+        for quantity, exactly in solution(scene).motion(times, DIGITS).quantities.items():
             off = near[quantity] - exactly.astype(float)
-            assert np.max(np.abs(off)) < 1e-5 * max(1.0, np.max(np.abs(exactly.astype(float))))
+            assert np.max(np.abs(off)) < 1e-7 * max(1.0, np.max(np.abs(exactly.astype(float))))
 
 
-def test_an_arc_of_more_than_half_a_turn_keeps_the_sign_of_its_quaternion(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """From a slow moment one arc turns far: the sign of its end is that to which the motion leads.
-
-    With the sign that is nearer, the course would jump, and the gap be halved until no double is in it.
-    """
-    spans, moved = list[float](), QuickMotion._moved
-
-    def counted(quick: QuickMotion, begins: Floats, states: Floats, lengths: Floats) -> Floats:
-        spans.append(np.min(np.abs(lengths)))
-        return moved(quick, begins, states, lengths)
-
-    monkeypatch.setattr(QuickMotion, "_moved", counted)
-    scene = load(SLOW_START)
-    exact = solution(scene)
-    elapsed = scene.clock.elapsed
-    known = exact.motion(elapsed, DIGITS)
-    quick = QuickMotion(scene, known.quantities, np.array([float(t) for t in elapsed]))
-    times = [Fraction(-4), Fraction(-1), Fraction(-1, 1000)]
-    truth, near = exact.motion(times, DIGITS), quick.at(np.array([float(t) for t in times]))
-    for quantity, exactly in truth.quantities.items():
-        expected = exactly.astype(float)
-        assert np.allclose(near[quantity], expected, rtol=0, atol=1e-5 * np.max(np.abs(expected)))
-    assert min(spans) > 1e-4
+@pytest.mark.parametrize("exponent", [-20, -60, -200])
+def test_a_way_beside_a_row_has_all_its_digits(exponent: int) -> None:
+    """The change of a state over a time far below its rounding is the rate times this time."""
+    scene = load("euler/with-attitude")
+    quick, flow = quick_from(scene, [0, 5, 9]), float_flow(scene)
+    later = 2.0**exponent
+    beyond = quick.beyond(np.array([1, 2]), np.array([later, -later]))
+    assert beyond is not None
+    first, second = flow.two_rates(quick.rows[1:])
+    expected = first * np.array([[1.0], [-1.0]]) + second * later / 2
+    assert np.allclose(beyond / later, expected, rtol=0, atol=later**2 + 1e-14)
 
 
 def test_a_motion_that_explodes_backwards_is_followed_where_it_is_wanted() -> None:
     """A damped body cannot be followed far before its start; rows after it are none the worse."""
     scene = load("euler/damped")
-    exact, times = solution(scene), scene.clock.elapsed
-    first = exact.motion([Fraction(0)], DIGITS)
-    quick = QuickMotion(scene, first.quantities, np.zeros(1), 32)
-    assert quick.at(np.array([-1e4])) is None
-    near = quick.at(np.array([float(times[3])]))
-    expected = exact.motion([times[3]], DIGITS)["omega"].astype(float)
-    assert np.allclose(near["omega"], expected, rtol=0, atol=1e-5)
+    quick, times = quick_from(scene, [0]), list(scene.clock.elapsed)
+    assert quick.at(in_units(scene, [Fraction(-(10**4))])) is None
+    states = quick.at(in_units(scene, [times[3]]))
+    assert states is not None
+    expected = solution(scene).motion([times[3]], DIGITS)["omega"].astype(float)
+    assert np.allclose(float_flow(scene).quantities(states)["omega"], expected, rtol=0, atol=1e-7)

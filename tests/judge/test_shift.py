@@ -23,7 +23,6 @@ from taylor_verify.check import check
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge.causes.quick_motion import QuickMotion
 from taylor_verify.judge.errors.shift import Shift, time_shifts
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.judgement import judgement
@@ -380,16 +379,6 @@ def test_a_shift_is_exact_where_the_motion_was_searched_in_float64() -> None:
     assert shift.time_shift == pytest.approx(0.4, rel=1e-14)
     # The shift is a double, and 2/5 is none.
     assert shift.remains < 1e-15
-
-
-def test_where_float64_does_not_follow_the_enclosure_is_asked(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Without a quick motion there is neither an error nor a proof that no shift explains."""
-    monkeypatch.setattr(QuickMotion, "at", lambda quick, times: None)
-    shift = of_all(NO_CLOSED_FORM, Fraction(1, 10))["impulse"]
-    assert shift.kind is Kind.CONSTANT
-    assert shift.time_shift == pytest.approx(0.1, rel=1e-14)
 
 
 @pytest.mark.parametrize("with_first", [True, False], ids=["first row given", "all rows shifted"])

@@ -1,4 +1,4 @@
-"""First and second time derivatives of an exact motion, from its own equations.
+"""The equations of a scene in float64, and the time derivatives of its exact motion by them.
 
 The equations are those of exact.quadratic_forms, z' = c + L z + z.Q z/2, so that z'' = L z' + z.Q z'. No
 difference of two motions is taken.
@@ -6,7 +6,7 @@ difference of two motions is taken.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final
@@ -17,13 +17,14 @@ from mpmath import mp
 from taylor_verify.exact.quadratic_forms import Floats, Scaled
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.row_arithmetic import cross_matrices
-from taylor_verify.exact.units import Units
 from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
 # Units of 2^-500 to 2^500 leave as much again to what is counted in them.
 _MODERATE: Final = 500
+# The numbers of a quantity that is no vector.
+_SIZES: Final = {"attitude": 9}
 
 
 @dataclass(frozen=True)
@@ -45,63 +46,123 @@ def rates(scene: Scene, motion: Motion) -> Rates:
 
     Raises ValueError for loads that a scene writes down: their rates are not known here.
     """
-    if scene.body.loads is not None:
-        raise ValueError(f"expected a body without written loads, got some @ {scene.name}")
-    scale, moving = _units(scene), kind_of(scene.body).moving
-    names = (*moving, "attitude", "centre")
-    exponents = dict(zip(names, (*scale.blocks, 0, scale.centre), strict=True))
-    values = {
-        name: _floats(motion[name], exponents[name]) for name in names if name in motion.quantities
-    }
-    state, flow = np.concatenate([values[name] for name in moving], axis=1), _flow(scene)
+    flow = float_flow(scene)
+    states = flow.states(motion.quantities)
     with np.errstate(all="ignore"):  # what is not finite stays so, and is the caller's to see
-        velocity, acceleration = _derivatives(flow, moving, state, values.get("attitude"))
-    return Rates(
-        velocity={name: velocity[name] for name in values},
-        acceleration={name: acceleration[name] for name in values},
-        units={name: exponents[name] for name in values},
-        time=scale.time,
-    )
+        first, second = flow.two_rates(states)
+    return Rates(flow.by_quantity(first), flow.by_quantity(second), flow.units, flow.time)
 
 
-def _units(scene: Scene) -> Units:
-    kind = kind_of(scene.body)
-    return kind.units(scene.body, kind.state(scene.initial))
+@dataclass(frozen=True)
+class FloatFlow:
+    """The equations of a scene in float64.
 
-
-def _derivatives(
-    flow: Scaled, moving: Sequence[str], z: Floats, attitude: Floats | None
-) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """First and second derivatives of every quantity by name.
-
-    ``z`` has the shape (times, n), ``attitude`` (times, 3, 3); without it there is the state alone.
+    A state is a row (n,) of the momenta, then the nine entries of the frame and the centre where they are
+    there, each in 2^units of its own; time is in 2^time. An array of states is (times, n).
     """
-    rate = flow.constant + z @ flow.linear.T + np.einsum("iab,ta,tb->ti", flow.hessian, z, z) / 2
-    second = rate @ flow.linear.T + np.einsum("iab,ta,tb->ti", flow.hessian, z, rate)
-    firsts, seconds = (
-        {name: rows[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
-        for rows in (rate, second)
-    )
-    if attitude is None:
-        return firsts, seconds
-    spin, spun = cross_matrices(z @ flow.spin.T), cross_matrices(rate @ flow.spin.T)
-    turning = attitude @ spin
-    firsts["attitude"], seconds["attitude"] = turning, turning @ spin + attitude @ spun
-    if len(flow.velocity):
-        speed, pushed = z @ flow.velocity.T, rate @ flow.velocity.T
-        firsts["centre"] = np.einsum("tij,tj->ti", attitude, speed)
-        carried = np.einsum("tij,tj->ti", turning, speed)
-        seconds["centre"] = carried + np.einsum("tij,tj->ti", attitude, pushed)
-    return firsts, seconds
+
+    moving: tuple[str, ...]
+    units: Mapping[str, int]
+    time: int
+    scaled: Scaled
+
+    def states(self, quantities: Mapping[str, np.ndarray[Any, Any]]) -> Floats:
+        """The states of the rows of a motion, in the scene's own units before."""
+        rows = [
+            _floats(quantities[name], exponent).reshape(-1, _SIZES.get(name, 3))
+            for name, exponent in self.units.items()
+            if name in quantities
+        ]
+        return np.hstack(rows)
+
+    def by_quantity(self, states: Floats) -> dict[str, Floats]:
+        """The parts of states by name, still in their units."""
+        parts, end = dict[str, Floats](), 0
+        for name in self.units:
+            begin, end = end, end + _SIZES.get(name, 3)
+            if end > states.shape[1]:
+                break
+            rows = states[:, begin:end]
+            parts[name] = rows.reshape(-1, 3, 3) if name == "attitude" else rows
+        return parts
+
+    def quantities(self, states: Floats) -> dict[str, Floats]:
+        """The rows of a motion, in the scene's units."""
+        parts = self.by_quantity(states)
+        return {name: np.ldexp(rows, self.units[name]) for name, rows in parts.items()}
+
+    def rates(self, states: Floats) -> Floats:
+        """The first derivatives of states."""
+        z, parts = self._momenta(states), self.by_quantity(states)
+        rate = self.scaled.constant + z @ self.scaled.linear.T + self._product(z, z) / 2
+        if "attitude" not in parts:
+            return rate
+        columns, frames = [rate], parts["attitude"]
+        columns.append((frames @ cross_matrices(z @ self.scaled.spin.T)).reshape(-1, 9))
+        if "centre" in parts:
+            columns.append(_turned(frames, z @ self.scaled.velocity.T))
+        return np.hstack(columns)
+
+    def two_rates(self, states: Floats) -> tuple[Floats, Floats]:
+        """The first and the second derivatives of states."""
+        first = self.rates(states)
+        z, rate = self._momenta(states), self._momenta(first)
+        second = rate @ self.scaled.linear.T + self._product(z, rate)
+        parts, firsts = self.by_quantity(states), self.by_quantity(first)
+        if "attitude" not in parts:
+            return first, second
+        columns, frames, turning = [second], parts["attitude"], firsts["attitude"]
+        spin, spun = (cross_matrices(rows @ self.scaled.spin.T) for rows in (z, rate))
+        columns.append((turning @ spin + frames @ spun).reshape(-1, 9))
+        if "centre" in parts:
+            speed, pushed = (rows @ self.scaled.velocity.T for rows in (z, rate))
+            columns.append(_turned(turning, speed) + _turned(frames, pushed))
+        return first, np.hstack(columns)
+
+    def paces(self, states: Floats) -> Floats:
+        """The pace at which a state and its neighbours change: the largest of three rates (times,).
+
+        They are that of the momenta in their units, the norm of its derivative by the momenta, and the
+        angular velocity.
+        """
+        z, first = self._momenta(states), self._momenta(self.rates(states))
+        slopes = self.scaled.linear + np.einsum("iab,ta->tib", self.scaled.hessian, z)
+        norms = np.linalg.norm(slopes.reshape(len(z), -1), axis=1)
+        changes, spins = (np.linalg.norm(rows, axis=1) for rows in (first, z @ self.scaled.spin.T))
+        return np.asarray(np.max([norms, changes, spins], axis=0))
+
+    def _momenta(self, states: Floats) -> Floats:
+        return states[:, : 3 * len(self.moving)]
+
+    def _product(self, left: Floats, right: Floats) -> Floats:
+        """left.hessian right, row by row."""
+        hessian = self.scaled.hessian.reshape(len(self.scaled.hessian), -1)
+        both = left[:, :, None] * right[:, None, :]
+        product: Floats = both.reshape(len(left), -1) @ hessian.T
+        return product
 
 
 @lru_cache(maxsize=16)
-def _flow(scene: Scene) -> Scaled:
-    """The equations of a scene's state in its units."""
-    scale, body = _units(scene), scene.body
+def float_flow(scene: Scene) -> FloatFlow:
+    """The equations of a scene in float64, in powers of two in which its motion is of size one.
+
+    Raises ValueError for loads that a scene writes down.
+    """
+    body = scene.body
+    if body.loads is not None:
+        raise ValueError(f"expected a body without written loads, got some @ {scene.name}")
+    kind = kind_of(body)
+    scale = kind.units(body, kind.state(scene.initial))
     unit = tuple(power_of_two(e) for e in scale.blocks for _ in range(3))
     times = power_of_two(scale.time), power_of_two(scale.centre)
-    return kind_of(body).equations(body).scaled(unit, *times)
+    names = (*kind.moving, "attitude", "centre")
+    units = dict(zip(names, (*scale.blocks, 0, scale.centre), strict=True))
+    return FloatFlow(kind.moving, units, scale.time, kind.equations(body).scaled(unit, *times))
+
+
+def _turned(frames: Floats, vectors: Floats) -> Floats:
+    turned: Floats = np.einsum("tij,tj->ti", frames, vectors)
+    return turned
 
 
 def _floats(values: np.ndarray[Any, Any], exponent: int) -> Floats:

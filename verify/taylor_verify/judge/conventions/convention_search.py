@@ -24,9 +24,9 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.rates import float_flow
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.judge.causes.quick_motion import QuickMotion
 from taylor_verify.judge.conventions.axis_orders import AXES, Axes, Frames, renamings
 from taylor_verify.judge.conventions.fits import (
     AS_WELL,
@@ -40,9 +40,10 @@ from taylor_verify.judge.conventions.fits import (
 )
 from taylor_verify.judge.conventions.meanings import readings, rotations
 from taylor_verify.judge.conventions.worlds import World, worlds
+from taylor_verify.judge.errors.quick_motion import QuickMotion
 from taylor_verify.judge.velocities import velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
-from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import Rung, power_of_two
 from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock
@@ -269,12 +270,14 @@ class _Search:
         if exact.route != "taylor":
             return True
         first = exact.evaluate([Fraction(0)], _DIGITS)
-        elapsed = np.array([float(t) for t in given.clock.elapsed])
-        if not QuickMotion.is_possible(given, first):
+        if given.body.loads is not None:
             return True
-        quick = QuickMotion(given, first, np.zeros(1)).at(elapsed)
-        if quick is None:
+        flow = float_flow(given)
+        times = np.array([float(t / power_of_two(flow.time)) for t in given.clock.elapsed])
+        states = QuickMotion(flow, first, np.zeros(1)).at(times)
+        if states is None:
             return True
+        quick = flow.quantities(states)
         known = list(range(len(self.rows))), self._with_velocities(given, quick)
         fits = self._fits(world, known)
         return any(fit.explains(self.plain, self.noise) for fit in fits)

@@ -9,7 +9,6 @@ searched among many shifts on a few samples.
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
@@ -21,12 +20,12 @@ _NEGLIGIBLE: Final = 1 / 16
 # A sample at which the motion is slower than this part of its fastest speed shows no time.
 _AT_REST: Final = 1e-3
 # Convergence is quadratic: 2^-4 becomes 2^-237 in six evaluations; the others serve a poor start.
-_EVALUATIONS: Final = 10
+_EVALUATIONS: Final = 14
 _HALVINGS: Final = 3
 # The iteration ends if an evaluation leaves more than this part of the error before it.
 _PROGRESS: Final = 0.9
 # Beyond this error (relative, or radians) first order may have the wrong direction.
-FAR: Final = 0.1
+_FAR: Final = 0.1
 # The search: this many steps of half a radian of the fastest turn, in each direction.
 _SEARCH_STEPS: Final = 16
 _SEARCH_STEP: Final = 0.5
@@ -63,26 +62,25 @@ def moving(fit: Shifted) -> np.ndarray[Any, np.dtype[np.bool_]]:
 def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
     """Return the least-squares fit along a course, starting from ``fit``."""
     for _ in range(_EVALUATIONS):
-        step = course(fit, compared.run.times)
+        step = course(fit, compared.times)
         better = _by_first_order(compared, fit, step)
         if better is not None:
             return better
-        closer = _closer(compared, fit, fit.more + step)
-        if closer is None:
-            return fit
-        if closer.left > _PROGRESS * fit.left:
-            return closer
+        closer = _closer(compared, fit, (fit.more + step) * fit.size)
+        if closer is None or closer.left > _PROGRESS * fit.left:
+            # A double cannot hold a better shift, or there is none.
+            last = fit.with_first_order(step)
+            neglected = fit.neglects(last.more) * fit.size
+            return last if last.left + neglected < (closer or fit).left else closer or fit
         fit = closer
     return fit
 
 
-def at(compared: Compared, fit: Shifted, shift: Floats) -> Shifted | None:
-    """Return the comparison after this shift of each sample; None if it cannot be computed.
-
-    ``fit`` is the one without a shift.
-    """
-    first_order = _by_first_order(compared, fit, shift / (float(fit.unit) * fit.size))
-    return first_order or compared.evaluated(tuple(map(Fraction, shift.tolist())))
+def at(compared: Compared, shift: Floats) -> Shifted | None:
+    """Return the comparison after this shift of each sample; None if it cannot be computed."""
+    fit = compared.unshifted
+    moved = shift / float(fit.unit)
+    return _by_first_order(compared, fit, moved / fit.size) or compared.evaluated(moved)
 
 
 def _by_first_order(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:
@@ -95,15 +93,10 @@ def _by_first_order(compared: Compared, fit: Shifted, step: Floats) -> Shifted |
 def _closer(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:
     """Return the evaluation at a further shift, halved until the error decreases; None if it never does."""
     for halvings in range(_HALVINGS + 1):
-        closer = compared.evaluated(fit.moved(step / 2**halvings))
+        closer = compared.evaluated(fit.moved + step / 2**halvings)
         if closer is None or closer.left < fit.left:
             return closer
     return None
-
-
-def reach(fit: Shifted) -> float:
-    """Return the largest shift of the search, in the scene's unit of time; 0 if the motion rests."""
-    return _SEARCH_STEPS * _SEARCH_STEP / fit.rate * float(fit.unit) if fit.rate else 0.0
 
 
 def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
@@ -112,20 +105,17 @@ def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
     For a periodic motion many shifts are equally good. The smallest shift is taken among those whose
     error equals the least, up to the error that half the distance between two of them can cause.
     """
-    is_far = np.max(np.abs(fit.error)) * fit.size > FAR
+    is_far = np.max(np.abs(fit.error)) * fit.size > _FAR
     if not is_far or not fit.rate:
         return fit
-    times = compared.run.times
+    times = compared.times
     shape = np.ones(len(times)) if course is constant else times
     pace = _SEARCH_STEP / fit.rate
-    counts = sorted(range(-_SEARCH_STEPS, _SEARCH_STEPS + 1), key=abs)
-    steps = [Fraction(k * pace) * fit.unit for k in counts]
+    steps = pace * np.array(sorted(range(-_SEARCH_STEPS, _SEARCH_STEPS + 1), key=abs))
     left = compared.left_by(steps, shape)
     if left is None:
         return fit
     between = (pace / 2) ** 2 * float(np.mean(fit.weight))
-    best = next(
-        step for step, error in zip(steps, left, strict=True) if error <= min(left) + between
-    )
-    start = compared.evaluated(tuple(best * Fraction(s) for s in shape.tolist()))
+    best = steps[np.argmax(left <= np.min(left) + between)]
+    start = compared.evaluated(best * shape)
     return fit if start is None or not start.left < fit.left else start

@@ -19,7 +19,6 @@ import numpy as np
 
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors import courses
-from taylor_verify.judge.errors.passage import Passage
 from taylor_verify.judge.errors.shifted import Compared, Floats, Run, Shifted
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.records.reason import Kind, TimeShift
@@ -36,6 +35,8 @@ LEAVES: Final = 0.1
 _STRAYS: Final = 0.1
 # a shift explains nothing if fewer samples than this share it.
 _FEWEST: Final = 3
+# Float64 follows the motion to this part of an error; less is settled by the exact motion.
+_FOLLOWED: Final = 1e-6
 # A stray is this many times further off than the median sample.
 _UNUSUAL: Final = 10.0
 # The Theil-Sen line uses all pairs of at most this many samples.
@@ -107,47 +108,32 @@ def time_shifts(
     error is not finite or a rate is beyond float64. If the motion rests, no shift explains anything.
     """
     run = Run(scene, exact, truth, answer, digits)
-    every = [Compared(run, errors) for errors in of]
-    starts = [_start(compared) for compared in every]
-    reaches = [courses.reach(start) for start in starts if start is not None]
-    passage = Passage(run, max(reaches, default=0.0))
-    return [
-        None if start is None else _shift(compared, start, passage)
-        for compared, start in zip(every, starts, strict=True)
-    ]
+    return [_shift(run, errors) for errors in of]
 
 
-def _start(compared: Compared) -> Shifted | None:
-    """Return the comparison without a shift; None if a number is beyond float64."""
-    run = compared.run
-    if not all(error <= _LARGEST_ERROR for error in compared.errors.values):
+def _shift(run: Run, errors: Errors) -> Shift | None:
+    """Return the best shift; None if a number is beyond float64."""
+    if not all(error <= _LARGEST_ERROR for error in errors.values):
         return None
-    start = compared.fit(run.truth, run.rates, run.unshifted)
-    return start if start.is_finite else None
+    compared = Compared.of(run, errors)
+    if not compared.unshifted.is_finite:
+        return None
+    shift = _searched(compared)
+    is_clear = shift.remains > _FOLLOWED * compared.largest(compared.unshifted)
+    if shift.kind is Kind.NONE or is_clear:
+        return shift
+    return _settled(replace(compared, is_exact=True), shift) or shift
 
 
-def _shift(compared: Compared, start: Shifted, passage: Passage) -> Shift:
-    """Return the best shift; of a large error one in float64 is asked first, where that is quicker."""
-    if compared.largest(start) > courses.FAR and passage.is_followed:
-        if courses.reach(start) <= passage.around and _passes_too_far(compared, start, passage):
-            return _without_evaluation(compared, start)
-        quick = _searched(replace(compared, is_quick=True), start)
-        if quick.kind is Kind.NONE:
-            return quick
-        if (exact := _settled(compared, start, quick)) is not None:
-            return exact
-    return _searched(compared, start)
-
-
-def _searched(compared: Compared, start: Shifted) -> Shift:
-    run = compared.run
-    fits = best = _Fits.of(compared, start)
+def _searched(compared: Compared) -> Shift:
+    instants = tuple(map(float, compared.run.scene.clock.instants))
+    fits = best = _Fits.of(compared)
     nearest = min(fits.constant, fits.linear, key=lambda fit: fit.left)
     single = courses.fitted(compared, nearest, courses.single)
-    if fits.kind is Kind.NONE:
+    if fits.kind is Kind.NONE and not _passes_too_far(compared, single):
         others = _without_strays(compared, single)
         best = next((other for other in others if other.kind is not Kind.NONE), fits)
-    kind, remains, course = best.kind, best.remains, best.course(run)
+    kind, remains, course = best.kind, best.remains, best.course(compared)
     if kind is Kind.NONE and best.explains(single):
         kind, remains, course = Kind.WANDERING, compared.largest(single), single.shift
     return Shift(
@@ -156,30 +142,36 @@ def _searched(compared: Compared, start: Shifted) -> Shift:
         kind=kind,
         remains=remains,
         trend=best.trend,
-        times=run.instants,
+        times=instants,
         at_samples=tuple(single.shift.tolist()),
         course=tuple(course.tolist()),
-        strays=tuple(run.instants[k] for k in best.strays),
+        strays=tuple(instants[k] for k in best.strays),
     )
 
 
-def _settled(compared: Compared, start: Shifted, quick: Shift) -> Shift | None:
+def _passes_too_far(compared: Compared, single: Shifted) -> bool:
+    """Return True if the exact motion, at whatever time, is too far from more rows than may be strays."""
+    off = np.linalg.norm(single.error, axis=1) * single.size
+    within = LEAVES * compared.largest(compared.unshifted)
+    most = max(1, int(_STRAYS * len(off)))
+    return int(np.count_nonzero(off > within)) > most
+
+
+def _settled(compared: Compared, quick: Shift) -> Shift | None:
     """Return a shift that float64 found with the numbers of the exact motion; None if it explains nothing.
 
     Numbers that do not belong to its course stay as they are.
     """
-    run = compared.run
-    strays = tuple(k for k, t in enumerate(run.instants) if t in quick.strays)
+    strays = tuple(np.flatnonzero(np.isin(quick.times, quick.strays)).tolist())
     shared = compared.without(strays) if strays else compared
-    unshifted = shared.fit(shared.run.truth, shared.run.rates, shared.run.unshifted)
-    near = courses.at(shared, unshifted, np.delete(quick.course, strays))
+    near = courses.at(shared, np.delete(quick.course, strays))
     if near is None:
         return None
     fit = courses.fitted(shared, near, _COURSES[quick.kind])
-    fits = _Fits(shared, unshifted, fit, fit, strays)
+    fits = _Fits(shared, fit, fit, strays)
     if not fits.explains(fit):
         return None
-    course = fit.shift if quick.kind is Kind.WANDERING else fits.line(run)
+    course = fit.shift if quick.kind is Kind.WANDERING else fits.line(compared)
     settled = replace(quick, remains=shared.largest(fit), course=tuple(course.tolist()))
     match quick.kind:
         case Kind.CONSTANT:
@@ -189,65 +181,35 @@ def _settled(compared: Compared, start: Shifted, quick: Shift) -> Shift | None:
     return replace(settled, at_samples=settled.course)
 
 
-def _passes_too_far(compared: Compared, start: Shifted, passage: Passage) -> bool:
-    """Return True if the exact motion, at whatever time, is too far from more rows than may be strays."""
-    # The error of several parts is that of the worst, and a distance is at most this much larger.
-    within = LEAVES * compared.largest(start) * float(np.sqrt(len(compared.errors.parts)))
-    most = max(1, int(_STRAYS * len(compared.run.elapsed)))
-    return int(np.count_nonzero(passage.distances(compared) > within)) > most
-
-
-def _without_evaluation(compared: Compared, start: Shifted) -> Shift:
-    """Return the shift of an error that none explains, with the numbers that first order tells."""
-    run = compared.run
-    best = start.with_first_order(courses.constant(start, run.times))
-    single = courses.single(start, run.times) * (float(start.unit) * start.size)
-    return Shift(
-        time_shift=float(best.shift[0]),
-        residual=compared.largest(best),
-        kind=Kind.NONE,
-        remains=compared.largest(start),
-        trend=0.0,
-        times=run.instants,
-        at_samples=tuple(single.tolist()),
-        course=(0.0,) * len(run.instants),
-    )
-
-
 @dataclass(frozen=True)
 class _Fits:
     """The constant and the drifting fit of some samples; ``strays`` are the indices of the others."""
 
     compared: Compared
-    start: Shifted
     constant: Shifted
     linear: Shifted
     strays: tuple[int, ...] = ()
 
     @classmethod
     def of(
-        cls,
-        compared: Compared,
-        start: Shifted,
-        line: Shifted | None = None,
-        strays: tuple[int, ...] = (),
+        cls, compared: Compared, line: Shifted | None = None, strays: tuple[int, ...] = ()
     ) -> _Fits:
-        """Return the fits that begin at ``start``, without a shift; the drifting fit begins at ``line``.
+        """Return the fits that begin without a shift; the drifting fit begins at ``line``.
 
         The constant fit must begin at a constant, because a fit contains the shift that it begins with.
         """
-        begin = courses.best_start(compared, start, courses.constant)
+        begin = courses.best_start(compared, compared.unshifted, courses.constant)
         constant = courses.fitted(compared, begin, courses.constant)
         onward = line or courses.best_start(compared, constant, courses.linear)
         linear = courses.fitted(compared, onward, courses.linear)
-        return cls(compared, start, constant, linear, strays)
+        return cls(compared, constant, linear, strays)
 
     def explains(self, fit: Shifted) -> bool:
         """Return True if the remaining error is small beside the error and beside the answer's motion.
 
         An answer without motion equals the truth at a constant time, which does not explain its error.
         """
-        some = min(self.compared.largest(self.start), self.compared.reach)
+        some = min(self.compared.largest(self.compared.unshifted), self.compared.reach)
         return bool(some > 0 and self.compared.largest(fit) <= LEAVES * some)
 
     @cached_property
@@ -259,22 +221,22 @@ class _Fits:
     @property
     def remains(self) -> float:
         fits = {Kind.CONSTANT: self.constant, Kind.DRIFTING: self.linear}
-        return self.compared.largest(fits.get(self.kind, self.start))
+        return self.compared.largest(fits.get(self.kind, self.compared.unshifted))
 
     @property
     def trend(self) -> float:
-        line, span = self.linear.shift, self.compared.run.span
+        line, span = self.linear.shift, float(self.compared.since[-1])
         return float(line[-1] - line[0]) / span if span else 0.0
 
-    def course(self, run: Run) -> Floats:
-        """Return the shift of all samples of a run, including strays."""
+    def course(self, every: Compared) -> Floats:
+        """Return the shift of all samples, including strays."""
         if self.kind is not Kind.DRIFTING:
-            return np.full(len(run.instants), float(self.constant.shift[0]))
-        return self.line(run)
+            return np.full(len(every.places), float(self.constant.shift[0]))
+        return self.line(every)
 
-    def line(self, run: Run) -> Floats:
-        """Return the drifting shift of all samples of a run."""
-        since: Floats = np.array(run.instants) - self.compared.run.instants[0]
+    def line(self, every: Compared) -> Floats:
+        """Return the drifting shift of all samples."""
+        since: Floats = every.since - every.since[self.compared.places[0]]
         line: Floats = self.linear.shift[0] + self.trend * since
         return line
 
@@ -288,18 +250,16 @@ def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
     if np.count_nonzero(moving) < _FEWEST:
         return
     for robust in (_median, _theil_sen):
-        course = robust(single.shift, moving, np.array(compared.run.instants))
+        course = robust(single.shift, moving, compared.since)
         speed = np.sqrt(single.weight) / (float(single.unit) * single.size)
         across = np.linalg.norm(single.error, axis=1)
         strays = strays_from(course, single.shift, speed, across)
         if not strays:
             continue
         shared = compared.without(strays)
-        run, shared_course = shared.run, np.delete(course, strays)
-        start = shared.fit(run.truth, run.rates, run.unshifted)
-        line = courses.at(shared, start, shared_course)
+        line = courses.at(shared, np.delete(course, strays))
         if line is not None:
-            yield _Fits.of(shared, start, line, strays)
+            yield _Fits.of(shared, line, strays)
 
 
 def strays_from(course: Floats, shifts: Floats, speed: Floats, across: Floats) -> tuple[int, ...]:

@@ -7,40 +7,37 @@ v, a         velocity and acceleration of exact(t - c), relative to the same sca
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import accumulate, pairwise
-from math import frexp, inf, isfinite
+from math import frexp, inf
 from typing import Any, Final
 
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.rates import Rates, rates
+from taylor_verify.exact.rates import FloatFlow, float_flow
 from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.judge.causes.quick_motion import MOST_ARCS, QuickMotion
+from taylor_verify.judge.errors.quick_motion import Places, QuickMotion
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.velocities import exact_matrix, velocity, velocity_forms
 from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.records.quantities import QUANTITIES, Measure
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import evenly
-from taylor_verify.scenes.motion import Clock, Motion
+from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
-Shifts = tuple[Fraction, ...]
 
 # A sum of a dozen products of float64 has a rounding error of up to this part of its terms.
 _FLOAT_NOISE: Final = 2.0**-48
-# Many shifts are tested on a few samples, to a few digits.
+# Many shifts are tested on a few samples.
 _SEARCH_SAMPLES: Final = 16
-_SEARCH_DIGITS: Final = 15
-# So many arcs in float64 one behind the other take less time than a closed form.
-_FEW_ARCS: Final = 32
-# Two times nearby, in the unit of time in which the motion is of size one, tell its rates.
-_ASIDE: Final = 2.0**-7
+# A smaller motion of the answer is not seen in its rows as doubles.
+_SEEN: Final = 2.0**-20
 # A verdict has no numbers below 2^-1000; above 2^-960 a double keeps all 53 bits.
 _LEAST_EXPONENT: Final = -1000
 _LEAST: Final = 2.0**-960
@@ -48,14 +45,15 @@ _LEAST: Final = 2.0**-960
 
 @dataclass(frozen=True)
 class Shifted:
-    """The comparison of the answer with exact(t - shifts), in flattened float64 rows, one for each sample.
+    """The comparison of the answer with exact(t - c), in flattened float64 rows, one for each sample.
 
     ``error`` is relative to the scale of the error and in multiples of ``size``, a power of two near the
     largest error. ``velocity`` and ``acceleration`` are relative to the same scale, per ``unit`` of time.
-    ``more`` is a further shift, in unit x size, that was subtracted from ``error`` by first order.
+    c is ``moved``, in units, and the exact motion was taken there; ``more``, in unit x size, is a further
+    shift that was subtracted from ``error`` by first order.
     """
 
-    shifts: Shifts
+    moved: Floats
     error: Floats
     velocity: Floats
     acceleration: Floats
@@ -66,8 +64,7 @@ class Shifted:
     @property
     def shift(self) -> Floats:
         """Whole shift of every sample, in the scene's unit of time."""
-        evaluated = np.array([float(c) for c in self.shifts]) if any(self.shifts) else 0.0
-        return evaluated + self.more * (float(self.unit) * self.size)
+        return self.moved * float(self.unit) + self.more * (float(self.unit) * self.size)
 
     @property
     def is_finite(self) -> bool:
@@ -106,11 +103,15 @@ class Shifted:
         noise = _FLOAT_NOISE * np.linalg.norm(self.velocity, axis=1) * np.abs(step)
         return float(np.max(bend + noise))
 
-    def moved(self, step: Floats) -> Shifts:
-        """Return the shifts with a further shift added, exactly."""
-        unit = self.unit * Fraction(self.size)
-        return tuple(
-            c + Fraction(s) * unit for c, s in zip(self.shifts, step.tolist(), strict=True)
+    def at(self, places: Places) -> Shifted:
+        """Return the comparison of some of the samples."""
+        return replace(
+            self,
+            moved=self.moved[places],
+            error=self.error[places],
+            velocity=self.velocity[places],
+            acceleration=self.acceleration[places],
+            more=self.more[places],
         )
 
     def with_first_order(self, step: Floats) -> Shifted:
@@ -130,91 +131,80 @@ class Run:
     digits: int
 
     @cached_property
-    def rates(self) -> Rates:
-        return rates(self.scene, self.truth)
+    def flow(self) -> FloatFlow:
+        return float_flow(self.scene)
+
+    @cached_property
+    def unit(self) -> Fraction:
+        """The unit of time of the flow, in the scene's."""
+        return power_of_two(self.flow.time)
+
+    @cached_property
+    def quick(self) -> QuickMotion:
+        """The exact motion in float64."""
+        since = np.array([float(t / self.unit) for t in self.elapsed])
+        return QuickMotion(self.flow, self.truth.quantities, since)
 
     @cached_property
     def elapsed(self) -> Sequence[Fraction]:
         return self.scene.clock.elapsed
 
     @cached_property
-    def instants(self) -> tuple[float, ...]:
-        return tuple(float(t) for t in self.scene.clock.instants)
-
-    @cached_property
-    def span(self) -> float:
-        return float(self.elapsed[-1] - self.elapsed[0])
-
-    @cached_property
-    def times(self) -> Floats:
-        """Times of the samples as fractions of the span, the first 0 and the last 1."""
-        elapsed = np.array([float(t) for t in self.elapsed])
-        shares: Floats = (elapsed - elapsed[0]) / (self.span or 1.0)
-        return shares
-
-    @property
-    def unshifted(self) -> Shifts:
-        return (Fraction(0),) * len(self.elapsed)
-
-    def near(self, elapsed: Sequence[Fraction]) -> Mapping[str, Any] | None:
-        """Return the motion to the few digits of a search; None if it cannot be computed."""
-        quick = self.along(_floats(elapsed))
-        if quick is not None:
-            return quick
-        motion = self.motion(elapsed, _SEARCH_DIGITS)
-        return None if motion is None else motion.quantities
-
-    @cached_property
-    def quick(self) -> QuickMotion | None:
-        """The motion in float64; None if it has loads."""
-        if not QuickMotion.is_possible(self.scene, self.truth.quantities):
-            return None
-        most = MOST_ARCS if self.exact.route == "taylor" else _FEW_ARCS
-        return QuickMotion(self.scene, self.truth.quantities, _floats(self.elapsed), most)
-
-    def along(self, times: Floats) -> Mapping[str, Any] | None:
-        """Return the motion in float64 at times since the start.
-
-        None if it has loads, or a closed form that takes less time.
-        """
-        return None if self.quick is None else self.quick.at(times)
-
-    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
-        """Return the exact motion; None if it cannot be computed."""
-        try:
-            return self.exact.motion(elapsed, digits)
-        except Unsettled:
-            return None
+    def since(self) -> Floats:
+        """The times of the samples since the start."""
+        return np.array([float(t) for t in self.elapsed])
 
 
 @dataclass(frozen=True)
 class Compared:
     """A quantity of an answer, compared with the exact motion at any shifts.
 
-    If it ``is_quick``, the motion at other times than the samples is taken in float64, and shifts that it
-    does not follow are not tried.
+    ``places`` are the samples that are compared, ``unshifted`` is their comparison without a shift. At
+    other times than the samples the motion is taken in float64, unless ``is_exact``.
     """
 
     run: Run
     errors: Errors
-    is_quick: bool = False
+    places: Places
+    unshifted: Shifted
+    is_exact: bool = False
 
-    def without(self, strays: Collection[int]) -> Compared:
+    @classmethod
+    def of(cls, run: Run, errors: Errors) -> Compared:
+        """Return the comparison of all samples."""
+        places, scales = np.arange(len(run.elapsed)), _scales(errors)
+        error, size = _relative(run.scene.body, run.answer, run.truth, scales)
+        states = run.quick.rows
+        start = _shifted(run, _forms(run, scales), np.zeros(len(error)), error, size, states)
+        return cls(run, errors, places, start)
+
+    def without(self, strays: Sequence[int]) -> Compared:
         """Return the comparison without these samples."""
-        run = self.run
-        places = [k for k in range(len(run.elapsed)) if k not in strays]
-        clock = Clock(run.scene.clock.start, tuple(run.scene.clock.instants[k] for k in places))
-        scene = replace(run.scene, clock=clock)
-        rows = replace(run, scene=scene, truth=run.truth.at(places), answer=run.answer.at(places))
-        return replace(self, run=rows)
+        places = np.delete(np.arange(len(self.places)), strays)
+        return replace(self, places=self.places[places], unshifted=self.unshifted.at(places))
+
+    @cached_property
+    def since(self) -> Floats:
+        """Times of the samples since the first of them."""
+        since = self.run.since[self.places]
+        return np.asarray(since - since[0])
+
+    @cached_property
+    def times(self) -> Floats:
+        """Times of the samples as fractions of the span, the first 0 and the last 1."""
+        shares: Floats = self.since / (self.since[-1] or 1.0)
+        return shares
 
     @cached_property
     def reach(self) -> float:
         """Largest distance of the answer from its first sample, in the unit of the error."""
         parts = []
         for part, scale in self._scales.items():
-            rows = self.run.answer[part].reshape(len(self.run.elapsed), -1)
-            apart = ((rows - rows[:1]) / scale).astype(float)
+            rows = self.run.answer[part][self.places].reshape(len(self.places), -1)
+            near = rows.astype(float) * float(1 / scale)
+            apart = near - near[:1]
+            if np.max(np.abs(apart)) < _SEEN * np.max(np.abs(near)):
+                apart = ((rows - rows[:1]) / scale).astype(float)
             parts.append(np.max(np.linalg.norm(apart, axis=1)))
         return float(max(parts))
 
@@ -223,138 +213,115 @@ class Compared:
         """Width of the truth: a smaller remaining error cannot be resolved."""
         return float(max(self.errors.truth_radius))
 
-    def evaluated(self, shifts: Shifts) -> Shifted | None:
-        """Return the comparison with the exact motion at t - shifts; None if it cannot be computed."""
-        run = self.run
-        elapsed = [t - c for t, c in zip(run.elapsed, shifts, strict=True)]
-        if self.is_quick:
-            return self._quickly(_floats(elapsed), shifts)
-        motion = run.motion(elapsed, run.digits)
-        if motion is None:
+    def evaluated(self, shift: Floats) -> Shifted | None:
+        """Return the comparison at a shift of each sample, in units; None if it cannot be computed."""
+        if self.is_exact:
+            return self._exactly(shift)
+        beyond, start = self.run.quick.beyond(self.places, -shift), self.unshifted
+        if beyond is None:
             return None
-        fit = self.fit(motion, rates(run.scene, motion), shifts)
+        error = start.error - beyond @ self._forms.T / start.size
+        factor = 2.0 ** frexp(float(np.max(np.abs(error))))[1]
+        states = self.run.quick.rows[self.places] + beyond
+        size = start.size * factor
+        fit = _shifted(self.run, self._forms, shift, error / factor, size, states)
         return fit if fit.is_finite else None
 
-    def _quickly(self, times: Floats, shifts: Shifts) -> Shifted | None:
-        """Return the comparison with the motion in float64; its rates are those of two times nearby."""
+    def _exactly(self, shift: Floats) -> Shifted | None:
         run = self.run
-        unit = power_of_two(run.rates.time)
-        aside = _ASIDE * float(unit)
-        motions = [run.along(times + side * aside) for side in (-1, 0, 1)]
-        if any(motion is None for motion in motions):
-            return None
-        before, here, after = (self.over_scales(motion) for motion in motions if motion)
-        error = self.over_scales(run.answer.quantities) - here
-        size = 2.0 ** frexp(float(np.max(np.abs(error))))[1]
-        velocity = (after - before) / (2 * _ASIDE)
-        acceleration = (after - 2 * here + before) / _ASIDE**2
-        return Shifted(
-            shifts, error / size, velocity, acceleration, size, unit, np.zeros(len(shifts))
-        )
-
-    def fit(self, truth: Motion, derivatives: Rates, shifts: Shifts) -> Shifted:
-        error, size = self._relative(truth.quantities)
-        velocity, acceleration = (
-            np.concatenate(
-                [self._rate(rows, derivatives.units, part) for part in self._scales], axis=1
-            )
-            for rows in (derivatives.velocity, derivatives.acceleration)
-        )
-        return Shifted(
-            shifts=shifts,
-            error=error,
-            velocity=velocity,
-            acceleration=acceleration,
-            size=size,
-            unit=power_of_two(derivatives.time),
-            more=np.zeros(len(shifts)),
-        )
-
-    def _rate(self, rows: Mapping[str, Floats], units: Mapping[str, int], part: str) -> Floats:
-        """Return the rate of a part over its scale, from those of the momenta where it is a velocity."""
-        scale = self._scales[part]
-        if part in rows:
-            factor = float(mp.ldexp(1, units[part]) / scale)
-            return factor * rows[part].reshape(len(rows[part]), -1)
-        forms = velocity_forms(self.run.scene.body)[part]
-        parts = [
-            rows[name] @ (exact_matrix(matrix).T * (mp.ldexp(1, units[name]) / scale)).astype(float)
-            for name, matrix in forms.items()
-        ]
-        total: Floats = np.sum(parts, axis=0)
-        return total
-
-    def left_by(self, steps: Sequence[Fraction], shape: Floats) -> list[float] | None:
-        """Return the mean square error of a few samples after shifts by each of the steps x ``shape``."""
-        run = self.run
-        rows = evenly(len(run.elapsed), _SEARCH_SAMPLES)
-        shares = [Fraction(shape[k]) for k in rows]
         elapsed = [
-            run.elapsed[k] - step * share
-            for step in steps
-            for k, share in zip(rows, shares, strict=True)
+            run.elapsed[k] - Fraction(c) * run.unit
+            for k, c in zip(self.places, shift.tolist(), strict=True)
         ]
-        motion = run.along(_floats(elapsed)) if self.is_quick else run.near(elapsed)
-        if motion is None:
+        try:
+            motion = run.exact.motion(elapsed, run.digits)
+        except Unsettled:
             return None
-        answer = self.over_scales({part: run.answer[part][rows] for part in self._scales})
+        answer = run.answer.at(self.places.tolist())
+        error, size = _relative(run.scene.body, answer, motion, self._scales)
+        states = run.flow.states(motion.quantities)
+        fit = _shifted(run, self._forms, shift, error, size, states)
+        return fit if fit.is_finite else None
+
+    def left_by(self, steps: Floats, shape: Floats) -> Floats | None:
+        """Return the mean square error of a few samples after shifts by each of the steps x ``shape``."""
+        rows = np.array(evenly(len(self.places), _SEARCH_SAMPLES))
+        some, start = np.tile(rows, len(steps)), self.unshifted
+        beyond = self.run.quick.beyond(self.places[some], -np.outer(steps, shape[rows]).ravel())
+        if beyond is None:
+            return None
         with np.errstate(all="ignore"):
-            errors = self.over_scales(motion).reshape(len(steps), *answer.shape) - answer
-            left = np.mean(np.sum(errors**2, axis=2), axis=1)
-        return [error if isfinite(error) else inf for error in left.tolist()]
-
-    def over_scales(self, motion: Mapping[str, Any]) -> Floats:
-        """Return the rows of a motion over the scales of the errors, flattened, in float64."""
-        parts = [
-            rows.reshape(len(rows), -1).astype(float) * float(1 / self._scales[part])
-            for part, rows in self._parts(motion).items()
-        ]
-        return np.concatenate(parts, axis=1)
-
-    def _parts(self, motion: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the compared quantities of a motion, of which velocities are made of the momenta."""
-        body = self.run.scene.body
-        return {p: motion[p] if p in motion else velocity(p, body, motion) for p in self._scales}
+            errors = start.error[some] * start.size - beyond @ self._forms.T
+            left = np.mean(np.sum(errors**2, axis=1).reshape(len(steps), -1), axis=1)
+        return np.where(np.isfinite(left), left, inf)
 
     def largest(self, fit: Shifted) -> float:
         """Return the largest remaining error, in the unit of the error."""
         ends = accumulate((self.run.answer[part][0].size for part in self._scales), initial=0)
         parts = [fit.error[:, left:right] for left, right in pairwise(ends)]
         left = float(max(np.max(np.linalg.norm(part, axis=1)) for part in parts)) * fit.size
-        if self._is_angle:
+        if QUANTITIES[self.errors.quantity].measure is Measure.ANGLE:
             return float(2 * np.arcsin(min(left / 2, 1.0)))
         return left
 
-    @property
-    def _is_angle(self) -> bool:
-        return QUANTITIES[self.errors.quantity].measure is Measure.ANGLE
-
     @cached_property
     def _scales(self) -> dict[str, Any]:
-        """Scales of the parts. A small turn changes a frame by sqrt 2 times the angle (Frobenius norm)."""
-        if self._is_angle:
-            return {self.errors.quantity: mp.sqrt(2)}
-        return self.errors.parts
+        return _scales(self.errors)
 
-    def _relative(self, truth: Mapping[str, Any]) -> tuple[Floats, float]:
-        """Return the error of the answer, in units of a power of two near the largest."""
-        parts = self._scales
-        errors = {p: self.run.answer[p] - exact for p, exact in self._parts(truth).items()}
-        errors = {p: error.reshape(len(error), -1) for p, error in errors.items()}
-        with np.errstate(all="ignore"):  # overflow and underflow are handled below
-            relative = np.concatenate(
-                [e.astype(float) * float(1 / parts[p]) for p, e in errors.items()], axis=1
-            )
-        largest = float(np.max(np.abs(relative)))
-        if _LEAST <= largest < inf:
-            size = 2.0 ** frexp(largest)[1]
-            return relative / size, size
-        # Too small for a double, or zero: scaled by a power of two before conversion.
-        exact = np.concatenate([e / parts[p] for p, e in errors.items()], axis=1)
-        largest = max(abs(value) for value in exact.flat)
-        exponent = max(int(mp.mag(largest)), _LEAST_EXPONENT) if largest else 0
-        return (exact * mp.ldexp(1, -exponent)).astype(float), 2.0**exponent
+    @cached_property
+    def _forms(self) -> Floats:
+        return _forms(self.run, self._scales)
 
 
-def _floats(times: Sequence[Fraction]) -> Floats:
-    return np.array([float(t) for t in times])
+def _scales(errors: Errors) -> dict[str, Any]:
+    """Return the scales of the parts. A small turn changes a frame by sqrt 2 times the angle."""
+    if QUANTITIES[errors.quantity].measure is Measure.ANGLE:
+        return {errors.quantity: mp.sqrt(2)}
+    return errors.parts
+
+
+def _forms(run: Run, scales: Mapping[str, Any]) -> Floats:
+    """Return the compared parts over their scales, as linear forms of a state."""
+    flow, width = run.flow, run.quick.rows.shape[1]
+    places = flow.by_quantity(np.arange(width)[None].astype(float))
+    every = []
+    for part, scale in scales.items():
+        is_state = part in places
+        of = {part: None} if is_state else velocity_forms(run.scene.body)[part]
+        rows = np.zeros((places[part].size if is_state else 3, width))
+        for name, matrix in of.items():
+            factor = mp.ldexp(1, flow.units[name]) / scale
+            entries = np.eye(len(rows)) if matrix is None else exact_matrix(matrix)
+            rows[:, places[name].ravel().astype(int)] = (entries * factor).astype(float)
+        every.append(rows)
+    return np.vstack(every)
+
+
+def _shifted(
+    run: Run, forms: Floats, shift: Floats, error: Floats, size: float, states: Floats
+) -> Shifted:
+    with np.errstate(all="ignore"):
+        first, second = (rows @ forms.T for rows in run.flow.two_rates(states))
+    return Shifted(shift, error, first, second, size, run.unit, np.zeros(len(shift)))
+
+
+def _relative(
+    body: Body, answer: Motion, truth: Motion, scales: Mapping[str, Any]
+) -> tuple[Floats, float]:
+    """Return the error of the answer, in units of a power of two near the largest."""
+    exact = truth.quantities
+    known = {p: exact[p] if p in exact else velocity(p, body, exact) for p in scales}
+    errors = {p: (answer[p] - rows).reshape(len(rows), -1) for p, rows in known.items()}
+    with np.errstate(all="ignore"):  # overflow and underflow are handled below
+        relative = np.concatenate(
+            [e.astype(float) * float(1 / scales[p]) for p, e in errors.items()], axis=1
+        )
+    largest = float(np.max(np.abs(relative)))
+    if _LEAST <= largest < inf:
+        size = 2.0 ** frexp(largest)[1]
+        return relative / size, size
+    # Too small for a double, or zero: scaled by a power of two before conversion.
+    over = np.concatenate([e / scales[p] for p, e in errors.items()], axis=1)
+    most = max(abs(value) for value in over.flat)
+    exponent = max(int(mp.mag(most)), _LEAST_EXPONENT) if most else 0
+    return (over * mp.ldexp(1, -exponent)).astype(float), 2.0**exponent
