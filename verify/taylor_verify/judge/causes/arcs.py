@@ -25,6 +25,8 @@ _FEWEST: Final = 16
 # Most steps of an arc, and the accuracy that derivatives need.
 _STEPS: Final = 32
 _COARSE: Final = 1e-6
+# Of faults without numbers the nearest are asked again if the defects are wrong by no more than this part.
+_SKETCH: Final = 0.01
 # Nor need an arc be nearer than this part of the defects, which tells any two causes apart.
 _TELLING: Final = 1e-9
 _FINEST: Final = 2e-14
@@ -152,6 +154,10 @@ class Evidence:
         """Return the defects as well as derivatives need them."""
         return self.defects(sets)
 
+    def sketched(self, sets: Sequence[Changes]) -> Floats:
+        """Return the defects to a small part of themselves."""
+        return self.coarse(sets)
+
     def left_by(self, changes: Changes, defects: Floats) -> float:
         """Return the size of the defects of changes without numbers, computed as well as a proof needs."""
         return float(np.linalg.norm(defects))
@@ -231,9 +237,9 @@ class Arcs(Evidence):
         return self.steps_given or self._steps(np.full((self.answer.n, 1), _COARSE))
 
     def _steps(self, goal: Floats) -> int:
-        n, right = self.answer.n, self.answer.right
+        n = self.answer.n
         return enough_steps(
-            lambda steps: self.ends(right, steps)[0, :n] / self.answer.sizes[:, None],
+            lambda steps: self._ends_of_right(steps)[0, :n] / self.answer.sizes[:, None],
             goal,
             is_patient=False,
         )
@@ -241,6 +247,16 @@ class Arcs(Evidence):
     def ends(self, equations: Equations, steps: int, count: int = 0) -> Floats:
         """Return the ends of the arcs by the equations, with at least the components they depend on."""
         return self.moved(equations, self.begin(max(count, equations.coupled)), steps)
+
+    @cached_property
+    def _known_ends(self) -> dict[int, Floats]:
+        return {}
+
+    def _ends_of_right(self, steps: int) -> Floats:
+        """Return the ends of the arcs by the scene's equations; they are computed once."""
+        if steps not in self._known_ends:
+            self._known_ends[steps] = self.ends(self.answer.right, steps, self.compared)
+        return self._known_ends[steps]
 
     def moved(self, equations: Equations, begin: Floats, steps: int) -> Floats:
         """Return the ends of the arcs from other states at their begins."""
@@ -271,9 +287,28 @@ class Arcs(Evidence):
     def coarse(self, sets: Sequence[Changes]) -> Floats:
         return self.defects(sets, self.few_steps)
 
+    def sketched(self, sets: Sequence[Changes]) -> Floats:
+        return self.defects(sets, self._sketching_steps)
+
+    @cached_property
+    def _sketching_steps(self) -> int:
+        """The steps of an arc for defects that are wrong by a small part of themselves."""
+        steps = 1
+        while steps < self.few_steps:
+            apart = self.defects([{}], steps)[0] - self.of_right
+            if np.linalg.norm(apart) < _SKETCH * self.size:
+                break
+            steps *= 2
+        return steps
+
     def _defects(self, sets: Sequence[Changes], steps: int) -> Floats:
         answer, n = self.answer, self.answer.n
-        ends = self.ends(answer.right.copies(sets), steps or self.steps, self.compared)
+        steps = steps or self.steps
+        ends = (
+            self.ends(answer.right.copies(sets), steps, self.compared)
+            if any(sets)
+            else self._ends_of_right(steps)
+        )
         defects = (self.end - ends[:, :n]) / answer.sizes[:, None]
         if self.compared > n:
             assert answer.file.q is not None

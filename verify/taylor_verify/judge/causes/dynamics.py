@@ -281,7 +281,7 @@ class Search:
         """Yield the faults that leave little by few steps, whose error the right scene has too."""
         evidence = self.evidence
         sets = [fault.changes(fault.right) for fault in faults]
-        right, *every = evidence.coarse([{}, *sets])
+        right, *every = evidence.sketched([{}, *sets])
         for fault, defects in zip(faults, every, strict=True):
             rest = evidence.of_right + defects - right
             self._left_by.append((fault, rest))

@@ -17,6 +17,7 @@ from taylor_verify.judge.causes.fit import Sizes
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.kinks import moved_through
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.proof import FEWER
 from taylor_verify.records.answers import MissingLoad
 
 _ROUNDS: Final = 3
@@ -108,15 +109,14 @@ def _shot(
 def _fitted(answer: Answer, arcs: Arcs) -> tuple[Floats, Floats, float]:
     """Return the load of each arc (arcs, n), its slopes (arcs, n, n), and the defects that it leaves."""
     right, n, scale = answer.right, answer.n, Sizes.of(answer).load * _SHIFT
-    load = np.zeros((len(arcs.first), n))
-    slopes = np.zeros((len(arcs.first), n, n))
+    load, begin = np.zeros((len(arcs.first), n)), arcs.begin(max(n, right.coupled))
+    few = max(1, arcs.steps // FEWER)
     for _ in range(_ROUNDS):
         shifts = np.concatenate([np.zeros((1, n)), np.diag(scale)])
         tried = right.load[None, :, None] + load.T[None] + shifts[:, :, None]
-        begin = arcs.begin(max(n, right.coupled))
-        ends = moved_through(arcs, right.changed({"load": tried}), begin, arcs.steps)[:, :n]
-        ends = ends / answer.sizes[:, None]
-        slopes = (ends[1:] - ends[0]).transpose(2, 1, 0) / scale
-        defects = (arcs.end / answer.sizes[:, None] - ends[0]).T
+        ends = arcs.moved(right.changed({"load": tried}), begin, few)[:, :n]
+        slopes = (ends[1:] - ends[0]).transpose(2, 1, 0) / (answer.sizes[:, None] * scale)
+        there = moved_through(arcs, right.changed({"load": tried[:1]}), begin, arcs.steps)[0, :n]
+        defects = ((arcs.end - there) / answer.sizes[:, None]).T
         load = load + np.linalg.solve(slopes, defects[..., None])[..., 0]
     return load, slopes, float(np.linalg.norm(defects))

@@ -27,15 +27,23 @@ ROUNDINGS: Final = 3.0
 CAPS: Final = (0.1, 0.01)
 # More numbers must leave this much less; what leaves no more than this much more explains as well.
 BETTER: Final = 10.0
-_ROUNDS: Final = 5
-_MORE: Final = 2
-# The next correction is of second order.
+# Corrections at most, and slopes, which a correction of less than this part of the motion leaves as they
+# are; they need so many times fewer steps.
+_ROUNDS: Final = 16
+_SLOPES: Final = 6
+_STALE: Final = 1e-3
+FEWER: Final = 4
+# Corrections are done if the next one is less than this; below the other they may be roundings.
+_SETTLED: Final = 1e-12
 _SMALL: Final = 1e-6
 # Rows so near to one motion are stepped to the kinks of the loads from here on.
 _NEAR: Final = 1e-4
 _LOST: Final = 1e3
 _DIFFERENCE: Final = 1e-6
 _SOME: Final = 24
+
+# The ends of arcs from their begins, stepped to the kinks of loads or over them.
+Go = Callable[[Floats, bool], Floats]
 
 
 def may_leave(answer: Answer, groups: Sequence[str], count: int = 0) -> float:
@@ -62,7 +70,10 @@ def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion |
         through = moved_through if is_near else Arcs.moved
         return through(arcs, equations, z, steps)
 
-    if not _shoot(rows, go, scale, is_near=not has_kinks(equations)):
+    def few(z: Floats) -> Floats:
+        return arcs.moved(equations, z, max(1, steps // FEWER))
+
+    if not _shoot(rows, go, few, scale, is_near=not has_kinks(equations)):
         return None
     motion = Motion(
         rows[:, :n],
@@ -107,27 +118,42 @@ def _with_frame(motion: Motion, equations: Equations, arcs: Arcs, has_frame: boo
 
 
 def _shoot(
-    rows: Floats, go: Callable[[Floats, bool], Floats], scale: Floats, is_near: bool
+    rows: Floats, go: Go, few: Callable[[Floats], Floats], scale: Floats, is_near: bool
 ) -> bool:
-    """Correct the rows until they are one motion, near it by another way; False if they become none."""
-    shifts = np.concatenate([np.zeros((1, len(scale))), _DIFFERENCE * np.diag(scale)])
-    for _ in range(_ROUNDS if is_near else _ROUNDS + _MORE):
-        ends = go(rows[:-1].T[None] + shifts[:, :, None], is_near)
-        if not np.all(np.isfinite(ends)):
+    """Correct the rows until they are one motion, near it by another way; False if they become none.
+
+    The slopes are those of a ``few`` steps, and serve until a correction is large.
+    """
+    size, last, made = np.inf, 1.0, 0
+    slopes = np.empty(0)
+    for _ in range(_ROUNDS):
+        if size > _STALE:
+            made += 1
+            if made > _SLOPES:
+                return False
+            slopes = _slopes(rows, few, scale)
+        ends = go(rows[:-1].T[None], is_near)[0]
+        if not (np.all(np.isfinite(ends)) and np.all(np.isfinite(slopes))):
             return False
-        slopes = ((ends[1:] - ends[0]).transpose(2, 1, 0)) / (_DIFFERENCE * scale)
-        gaps = ends[0].T - rows[1:]
         correction = np.zeros_like(rows)
-        for k, (slope, gap) in enumerate(zip(slopes, gaps, strict=True)):
+        for k, (slope, gap) in enumerate(zip(slopes, ends.T - rows[1:], strict=True)):
             correction[k + 1] = slope @ correction[k] + gap
-        size = float(np.max(np.abs(correction) / scale))
+        size, last = float(np.max(np.abs(correction) / scale)), min(size, 1.0)
         if not size < _LOST:
             return False
         rows += correction
-        if size < _SMALL and is_near:
+        # The next correction is smaller by as much again, or both are roundings.
+        if is_near and (size**2 < _SETTLED * last or last / 2 < size < _SMALL):
             return True
         is_near = is_near or size < _NEAR
     return False
+
+
+def _slopes(rows: Floats, few: Callable[[Floats], Floats], scale: Floats) -> Floats:
+    """Return the derivatives of the ends of arcs by their begins, (arcs, components, components)."""
+    shifts = np.concatenate([np.zeros((1, len(scale))), _DIFFERENCE * np.diag(scale)])
+    ends = few(rows[:-1].T[None] + shifts[:, :, None])
+    return np.asarray((ends[1:] - ends[0]).transpose(2, 1, 0) / (_DIFFERENCE * scale))
 
 
 def with_units(v: Floats) -> Floats:
