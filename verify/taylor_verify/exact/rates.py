@@ -122,12 +122,14 @@ class FloatFlow:
     def paces(self, states: Floats) -> Floats:
         """The pace at which a state and its neighbours change: the largest of three rates (times,).
 
-        They are that of the momenta in their units, the norm of its derivative by the momenta, and the
-        angular velocity.
+        They are that of the momenta in their units, that of their neighbours, and the angular velocity.
+        That of the neighbours is the fourth root of the norm of the fourth power of the Jacobian: no unit
+        matters in its spectral radius, and little in this.
         """
         z, first = self._momenta(states), self._momenta(self.rates(states))
-        slopes = self.scaled.linear + np.einsum("iab,ta->tib", self.scaled.hessian, z)
-        norms = np.linalg.norm(slopes.reshape(len(z), -1), axis=1)
+        jacobian = self.scaled.linear + np.einsum("iab,ta->tib", self.scaled.hessian, z)
+        square = jacobian @ jacobian
+        norms = np.linalg.norm((square @ square).reshape(len(z), -1), axis=1) ** 0.25
         changes, spins = (np.linalg.norm(rows, axis=1) for rows in (first, z @ self.scaled.spin.T))
         return np.asarray(np.max([norms, changes, spins], axis=0))
 
