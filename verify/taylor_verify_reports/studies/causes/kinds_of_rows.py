@@ -226,4 +226,7 @@ LATER: Final = (
     ),
     Kind("attitude a row late", ("attitude is late",), _changed(_late_attitude)),
 )
-AT_WHOLE_STEPS: Final = Kind("rows at whole steps", ("the last whole step",), _at_whole_steps)
+# As many whole steps in each row are another pace of the clock.
+AT_WHOLE_STEPS: Final = Kind(
+    "rows at whole steps", ("the last whole step", "clock"), _at_whole_steps
+)
