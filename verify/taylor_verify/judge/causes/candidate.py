@@ -109,7 +109,8 @@ def _is_written(number: float, right: float, floor: float) -> bool:
 class Cause:
     """A proven cause: the part of the error of each group that it ``leaves``, and others as good.
 
-    ``where`` stands before the name: the part of the run, or the convention, that it is said for.
+    ``where`` stands before the name: the part of the run, or the convention, that it is said for. Unless
+    it ``is_whole`` it leaves of the attitude more than the file rounds off.
     """
 
     name: str
@@ -120,6 +121,7 @@ class Cause:
     changes: Changes = field(default_factory=dict)
     method: Any = None
     where: str = ""
+    is_whole: bool = True
 
     @property
     def title(self) -> str:

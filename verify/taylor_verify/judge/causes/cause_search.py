@@ -128,7 +128,7 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
         cause = causes[-1] if causes else None
     if not has_wrong_attitude:
         return causes
-    if cause is not None and cause.leaves.get("attitude", 1.0) <= _enough(answer, cause):
+    if cause is not None and cause.is_whole and _left(cause) <= _enough(answer, cause):
         return causes
     is_slight = cause is not None and max(answer.worst[name] for name in moving) < (
         _CONTRADICTED * answer.worst["attitude"]
@@ -220,7 +220,12 @@ def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> 
 
 def _stands(cause: Cause) -> bool:
     """Return True if a cause may leave the attitude as it does: it is near, of steps or of a part."""
-    return cause.leaves.get("attitude", 1.0) <= _PROVEN or _is_of_steps(cause)
+    return (cause.is_whole and _left(cause) <= _PROVEN) or _is_of_steps(cause)
+
+
+def _left(cause: Cause) -> float:
+    """Return the part of the attitude's error that a cause leaves."""
+    return cause.leaves.get("attitude", 1.0)
 
 
 def _is_of_steps(cause: Cause) -> bool:

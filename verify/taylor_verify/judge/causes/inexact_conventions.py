@@ -31,7 +31,9 @@ from taylor_verify.judge.causes.paths import paths
 from taylor_verify.judge.causes.proof import LEAVES
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 
+# What a convention may leave, in roundings of a row; fitted numbers imitate others, as a delay a filter.
 _ROUNDINGS: Final = 10.0
+_ROUNDINGS_OF_FIT: Final = 1.5
 _PART: Final = 1e-6
 _MOST: Final = 0.03
 # A limit is reached so often.
@@ -93,7 +95,8 @@ def readings(answer: Answer) -> dict[str, Cause]:
         near, least = [], _ROUNDINGS * answer.roundings[name]
         for place, reading in enumerate(tried):
             left = _left(answer, name, reading.rows)
-            bound = max(least, reading.part * answer.worst[name])
+            most = _ROUNDINGS_OF_FIT if reading.count else _ROUNDINGS
+            bound = max(most * answer.roundings[name], reading.part * answer.worst[name])
             if left <= bound and left < _MOST * answer.worst[name]:
                 # Of two that leave no more than roundings, the simpler one was tried first.
                 near.append((reading.count, max(left, least), place, reading.name))

@@ -21,14 +21,17 @@ from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.words.causes import with_numbers
 
-# Error of float64 over a whole answer.
+# Error of float64 over a whole answer, and of the attitude, which adds up the errors of all arcs.
 _FLOAT64: Final = 5e-13
+_FLOAT64_ADDED: Final = 1e-11
 # Defects of so many roundings of the file may be left.
 _DEFECT_ROUNDINGS: Final = 30.0
 # Each number after the first has to leave so much less: many fit nearly whatever is wrong.
 _OF_EACH_NUMBER: Final = 0.1
 # Two families at once leave at most this.
 PAIR: Final = 1e-4
+# A row is no further off than by so many roundings if a fault explains it.
+_ROUNDED: Final = 1.0
 # What leaves so little leaves nothing.
 NOTHING: Final = 1e-9
 # A fault with numbers leaves no more than a fair simulator does, or noise, or its numbers, or what they
@@ -183,10 +186,11 @@ class Choice:
         candidate, family = proven.candidate, proven.candidate.family
         are_drags = candidate.kind == "pair" and _DRAGS.issuperset(p.kind for p in family.parts)
         fair = _FAIR_PAIR if candidate.kind == "pair" and candidate.count > 1 else FAIR
-        least = NOTHING if are_drags else max(self._least, fair)
-        if not candidate.count or proven.worst <= least:
+        if not candidate.count or proven.worst <= (NOTHING if are_drags else fair):
             return True
-        if not are_drags and self._leaves_noise(proven):
+        if not are_drags and (
+            self._leaves_rounding(proven, self.groups) or self._leaves_noise(proven)
+        ):
             return True
         differences = family.right + _short(candidate.numbers - family.right)
         for numbers in (_short(candidate.numbers), differences):
@@ -194,6 +198,16 @@ class Choice:
             if short is not None and short.worst <= max(proven.worst, self._least):
                 return True
         return False
+
+    def _leaves_rounding(self, proven: _Proven, groups: Sequence[str]) -> bool:
+        """Return True if what is left of groups is no more than the file, and the search, round off."""
+        answer = self.answer
+        own = {name: _FLOAT64 if name in answer.groups else _FLOAT64_ADDED for name in groups}
+        return all(
+            proven.leaves.get(name, np.inf)
+            <= max(_ROUNDED * answer.floor([name]), least / answer.worst[name])
+            for name, least in own.items()
+        )
 
     def _left(self, candidate: Candidate) -> _Proven | None:
         """Return what a candidate leaves of the whole answer; None where it has no motion."""
@@ -218,15 +232,42 @@ class Choice:
         size = float(np.max(np.linalg.norm(rows, axis=1)) / unit)
         return left * max(1.0, self.answer.worst[name] / size) if size > 0 else left
 
-    def _refitted(self, candidate: Candidate) -> _Proven | None:
-        """Return a candidate whose numbers are fitted once more, on the whole answer."""
+    def _is_whole(self, proven: _Proven) -> bool:
+        """Return True if the attitude has the numbers of the motion, to the rounding of both.
+
+        The attitude adds up what a law of another form does, and the rounding of the motion hides.
+        """
+        candidate, name = proven.candidate, "attitude"
+        left = proven.leaves.get(name, 0.0)
+        is_coarse = proven.worst > self._least
+        if not candidate.count or left <= FAIR or left > CAPS[0] or is_coarse:
+            return True
+        if self._leaves_rounding(proven, [name]):
+            return True
+        with suppress(Spent):
+            both = self._refitted(candidate, has_attitude=True)
+            return both is not None and self._leaves_rounding(both, [*self.groups, name])
+        return False
+
+    def _refitted(self, candidate: Candidate, has_attitude: bool = False) -> _Proven | None:
+        """Return a candidate whose numbers are fitted once more, on the whole answer.
+
+        With the attitude both are fitted, by their roundings.
+        """
         few, family = self.answer.thinned(FIT_ROWS), candidate.family
 
         def rest(numbers: Floats) -> Floats:
             motion = candidate.motion(few, family.changes(numbers))
             if motion is None:
                 raise ValueError(numbers)
-            return np.asarray((few.file.v - motion.v) / few.sizes).ravel()
+            off = np.asarray((few.file.v - motion.v) / few.sizes).ravel()
+            if not has_attitude:
+                return off
+            assert few.file.q is not None
+            assert motion.q is not None
+            signs = np.sign(np.sum(few.file.q * motion.q, axis=1, keepdims=True))
+            turned = (few.file.q * signs - motion.q).ravel() / max(few.noise[1], _FLOAT64)
+            return np.concatenate([off / np.max(few.rounding), turned]) * np.max(few.rounding)
 
         for shift in _SHIFTS:
             with suppress(ValueError):
@@ -254,8 +295,16 @@ class Choice:
             for each in alike[1:]
             if not _are_same_body(each.candidate.changes, first.candidate.changes)
         )
+        is_whole = self._is_whole(first)
         return Cause(
-            best.family.name, best.kind, shortened.leaves, text, others, changes, best.method
+            best.family.name,
+            best.kind,
+            shortened.leaves,
+            text,
+            others,
+            changes,
+            best.method,
+            is_whole=is_whole,
         )
 
     @property
