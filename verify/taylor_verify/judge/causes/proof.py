@@ -32,6 +32,7 @@ BETTER: Final = 10.0
 _ROUNDS: Final = 16
 _SLOPES: Final = 6
 _STALE: Final = 1e-3
+_SLOW: Final = 0.1
 FEWER: Final = 4
 # Corrections are done if the next one is less than this; below the other they may be roundings.
 _SETTLED: Final = 1e-12
@@ -44,6 +45,8 @@ _SOME: Final = 24
 
 # The ends of arcs from their begins, stepped to the kinks of loads or over them.
 Go = Callable[[Floats, bool], Floats]
+# The same in few steps or in all.
+Ahead = Callable[[Floats, bool], Floats]
 
 
 def may_leave(answer: Answer, groups: Sequence[str], count: int = 0) -> float:
@@ -70,10 +73,10 @@ def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion |
         through = moved_through if is_near else Arcs.moved
         return through(arcs, equations, z, steps)
 
-    def few(z: Floats) -> Floats:
-        return arcs.moved(equations, z, max(1, steps // FEWER))
+    def ahead(z: Floats, is_fine: bool) -> Floats:
+        return arcs.moved(equations, z, steps if is_fine else max(1, steps // FEWER))
 
-    if not _shoot(rows, go, few, scale, is_near=not has_kinks(equations)):
+    if not _shoot(rows, go, ahead, scale, is_near=not has_kinks(equations)):
         return None
     motion = Motion(
         rows[:, :n],
@@ -117,42 +120,48 @@ def _with_frame(motion: Motion, equations: Equations, arcs: Arcs, has_frame: boo
     return motion
 
 
-def _shoot(
-    rows: Floats, go: Go, few: Callable[[Floats], Floats], scale: Floats, is_near: bool
-) -> bool:
+def _shoot(rows: Floats, go: Go, ahead: Ahead, scale: Floats, is_near: bool) -> bool:
     """Correct the rows until they are one motion, near it by another way; False if they become none.
 
-    The slopes are those of a ``few`` steps, and serve until a correction is large.
+    The slopes are those ``ahead`` in few steps, and serve until a correction is large. Where they lead on
+    slowly, as beside kinks, they are made in all steps.
     """
-    size, last, made = np.inf, 1.0, 0
-    slopes = np.empty(0)
+    last, made, is_fine = 1.0, 0, False
+    slopes: Floats | None = None
     for _ in range(_ROUNDS):
-        if size > _STALE:
+        if slopes is None:
             made += 1
             if made > _SLOPES:
                 return False
-            slopes = _slopes(rows, few, scale)
+            slopes = _slopes(rows, ahead, is_fine, scale)
         ends = go(rows[:-1].T[None], is_near)[0]
         if not (np.all(np.isfinite(ends)) and np.all(np.isfinite(slopes))):
             return False
         correction = np.zeros_like(rows)
         for k, (slope, gap) in enumerate(zip(slopes, ends.T - rows[1:], strict=True)):
             correction[k + 1] = slope @ correction[k] + gap
-        size, last = float(np.max(np.abs(correction) / scale)), min(size, 1.0)
+        size = float(np.max(np.abs(correction) / scale))
         if not size < _LOST:
             return False
         rows += correction
         # The next correction is smaller by as much again, or both are roundings.
-        if is_near and (size**2 < _SETTLED * last or last / 2 < size < _SMALL):
+        if is_near and (size**2 < _SETTLED * last or (is_fine and last / 2 < size < _SMALL)):
             return True
-        is_near = is_near or size < _NEAR
+        is_slow = size > _SLOW * last and size <= _STALE
+        if not is_near and size < _NEAR:
+            # The other way has a correction of its own.
+            is_near, last = True, 1.0
+            continue
+        if size > _STALE or (is_slow and not is_fine):
+            slopes, is_fine = None, is_fine or is_slow
+        last = min(size, 1.0)
     return False
 
 
-def _slopes(rows: Floats, few: Callable[[Floats], Floats], scale: Floats) -> Floats:
+def _slopes(rows: Floats, ahead: Ahead, is_fine: bool, scale: Floats) -> Floats:
     """Return the derivatives of the ends of arcs by their begins, (arcs, components, components)."""
     shifts = np.concatenate([np.zeros((1, len(scale))), _DIFFERENCE * np.diag(scale)])
-    ends = few(rows[:-1].T[None] + shifts[:, :, None])
+    ends = ahead(rows[:-1].T[None] + shifts[:, :, None], is_fine)
     return np.asarray((ends[1:] - ends[0]).transpose(2, 1, 0) / (_DIFFERENCE * scale))
 
 
