@@ -182,8 +182,8 @@ def _of_scene(loads: Loads) -> Iterator[tuple[str, _Names]]:
         yield "the loads take the velocity over ground, not that through the water", ground
 
 
-def _turned(entries: tuple[object, ...], entry: str, i: int) -> str:
-    terms = (f"{entry.format(i, k)}*({x})" for k, x in zip(_AXES, entries, strict=True))
+def _turned(entries: tuple[Entry, ...], entry: str, i: int) -> str:
+    terms = (f"{entry.format(i, k)}*({_decimal(x)})" for k, x in zip(_AXES, entries, strict=True))
     return f"({' + '.join(terms)})"
 
 
@@ -353,12 +353,15 @@ def _texts_of(hung: Hung, is_in_body: bool = False) -> dict[str, list[str]]:
 
 
 def _decimal(entry: Entry, sign: str = "") -> str:
-    """Return a number as a decimal if it is one, with the other sign if there is one; a name stays."""
+    """Return a number as a decimal if it or its double is one, with the other sign if there is one.
+
+    A name stays.
+    """
     if isinstance(entry, str):
         return f"{sign}{entry}"
     value = -entry if sign else entry
     text = str(value) if value.denominator == 1 else repr(float(value))
-    return text if Fraction(text) == value else str(value)
+    return text if value in (Fraction(text), float(text)) else str(value)
 
 
 def added(loads: Loads, more: Mapping[str, Sequence[str]]) -> Loads:

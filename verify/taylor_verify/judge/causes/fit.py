@@ -40,6 +40,9 @@ _GAIN: Final = 0.95
 # One number is fitted in a few rounds, each far better than the last.
 _GAIN_OF_ONE: Final = 0.7
 _NOTHING: Final = 1e-13
+# A fit on the whole answer has few rounds, and is done when so much is left.
+_FEW_ROUNDS: Final = 5
+_SETTLED: Final = 1e-11
 # Defects above this are measured with the few steps that derivatives take.
 _COARSE: Final = 1e-3
 # Factors of a clock that is not nearly right.
@@ -285,3 +288,20 @@ def orthonormal(columns: Floats, least: float) -> Floats:
 def across(basis: Floats, vector: Floats) -> Floats:
     """Return a vector without its part in the span of an orthonormal basis."""
     return np.asarray(vector - basis @ (basis.T @ vector))
+
+
+def least_rest(
+    rest: Callable[[Floats], Floats], numbers: Floats, scale: Floats, shift: float
+) -> Floats:
+    """Return numbers that leave less, by Newton's method. Raises ValueError where no motion is reached."""
+    last = np.inf
+    for _ in range(_FEW_ROUNDS):
+        base = rest(numbers)
+        largest = float(np.max(np.abs(base)))
+        if largest > 0.5 * last or largest < _SETTLED:
+            break
+        ahead = [rest(numbers + step) for step in shift * np.diag(scale)]
+        slopes = (np.array(ahead) - base).T / shift
+        step = np.linalg.lstsq(slopes, base, rcond=1e-9)[0]
+        last, numbers = largest, numbers - scale * step
+    return numbers

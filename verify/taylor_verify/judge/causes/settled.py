@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -13,6 +14,7 @@ from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.changed_texts import names_inertia
+from taylor_verify.judge.causes.fit import least_rest
 from taylor_verify.judge.causes.fitted_bodies import entries, nearest_factor, structure
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
@@ -47,21 +49,19 @@ _TRIED: Final = 3
 _SHARE_OF_NOISE: Final = 0.1
 # Of noise this part is left in the next row, by chance in some tens of rows.
 _MEMORY: Final = 0.4
-# Numbers are fitted once more on so many rows, of so many candidates, in so many rounds.
+# Numbers are fitted once more on so many rows, of so many candidates.
 FIT_ROWS: Final = 160
 _POLISHED: Final = 4
-_ROUNDS: Final = 5
-_SETTLED: Final = 1e-11
 # Changes for a derivative; a motion that magnifies them too far to be reached gets the smaller one.
 _SHIFTS: Final = (1e-5, 1e-8)
 _PROVEN: Final = 6
 # So few numbers are printed with as few digits as explain as much.
 FEW: Final = 3
-_DIGITS: Final = (2, 3, 4, 6)
+_DIGITS: Final = (2, 3, 4, 6, 17)
 # Bodies whose entries agree to this part are one.
 _SAME_BODY: Final = 1e-6
-# A number so small beside the scale of its family is none.
-_NO_NUMBER: Final = 1e-8
+# A number so small beside the scale of its family is none, if the motion is as near without it.
+_NO_NUMBER: Final = (1e-3, 1e-8)
 
 
 @dataclass(frozen=True)
@@ -271,7 +271,7 @@ class Choice:
 
         for shift in _SHIFTS:
             with suppress(ValueError):
-                numbers = _settled_numbers(rest, candidate.numbers, family.scale, shift)
+                numbers = least_rest(rest, candidate.numbers, family.scale, shift)
                 return self._left(replace(candidate, numbers=numbers))
         return None
 
@@ -325,17 +325,23 @@ class Choice:
 
     def _shortened(self, proven: _Proven) -> _Proven:
         """Return a candidate with the fewest digits of its numbers that explain as much."""
-        candidate, worst = proven.candidate, max(proven.worst, self._least / ROUNDINGS)
-        family, numbers = candidate.family, candidate.numbers
+        candidate, family, numbers = (
+            proven.candidate,
+            proven.candidate.family,
+            proven.candidate.numbers,
+        )
+        allowed = max(2 * proven.worst, self._least / ROUNDINGS, NOTHING)
         if not 0 < family.count <= FEW:
             return proven
-        large = np.where(np.abs(numbers) > _NO_NUMBER * family.scale, numbers, 0.0)
-        for digits in _DIGITS:
+        sets = [np.where(np.abs(numbers) > e * family.scale, numbers, 0.0) for e in _NO_NUMBER]
+        for digits, large in product(_DIGITS, sets):
             with suppress(Spent, ValueError):
                 shorter = np.array([float(f"{x:.{digits}g}") for x in large])
                 short = replace(candidate, numbers=shorter)
+                if np.all(np.abs(shorter - numbers) <= NOTHING * np.abs(numbers)):
+                    return replace(proven, candidate=short)
                 left = self._left(short)
-                if left is not None and left.worst <= worst:
+                if left is not None and left.worst <= allowed:
                     return left
         return proven
 
@@ -368,23 +374,6 @@ class Choice:
 
 def _short(numbers: Floats) -> Floats:
     return np.array([float(f"{x:.{_SHORT}g}") for x in numbers])
-
-
-def _settled_numbers(
-    rest: Callable[[Floats], Floats], numbers: Floats, scale: Floats, shift: float
-) -> Floats:
-    """Return numbers that leave less, by Newton's method. Raises ValueError where no motion is reached."""
-    last = np.inf
-    for _ in range(_ROUNDS):
-        base = rest(numbers)
-        largest = float(np.max(np.abs(base)))
-        if largest > 0.5 * last or largest < _SETTLED:
-            break
-        ahead = [rest(numbers + step) for step in shift * np.diag(scale)]
-        slopes = (np.array(ahead) - base).T / shift
-        step = np.linalg.lstsq(slopes, base, rcond=1e-9)[0]
-        last, numbers = largest, numbers - scale * step
-    return numbers
 
 
 def _are_same_body(changes: Changes, other: Changes) -> bool:
