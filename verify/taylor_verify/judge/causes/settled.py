@@ -163,6 +163,9 @@ class Choice:
         if proof is None or candidate.is_nothing:
             return None
         is_pair, count = candidate.kind == "pair", candidate.count
+        if candidate.kind == "method" and candidate.method is not None:
+            # One of many steps fits the size of an error whose form is another method's.
+            most /= candidate.method.count
         most = max(most * _OF_EACH_NUMBER ** max(0, count - 1), NOTHING)
         if proof.worst <= min(PAIR, most) and self._is_evident(proof):
             return proof
