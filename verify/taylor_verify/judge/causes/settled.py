@@ -338,14 +338,14 @@ class Choice:
             return proven
         sets = [np.where(np.abs(numbers) > e * family.scale, numbers, 0.0) for e in _NO_NUMBER]
         for digits, large in product(_DIGITS, sets):
+            shorter = np.array([float(f"{x:.{digits}g}") for x in large])
+            short = replace(candidate, numbers=shorter)
             with suppress(Spent, ValueError):
-                shorter = np.array([float(f"{x:.{digits}g}") for x in large])
-                short = replace(candidate, numbers=shorter)
-                if np.all(np.abs(shorter - numbers) <= NOTHING * np.abs(numbers)):
-                    return replace(proven, candidate=short)
                 left = self._left(short)
                 if left is not None and left.worst <= allowed:
                     return left
+            if np.all(np.abs(shorter - numbers) <= NOTHING * np.abs(numbers)):
+                return replace(proven, candidate=short)
         return proven
 
     def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool, bool, bool, int]:
