@@ -306,7 +306,10 @@ class Search:
                     is_new = all(abs(fit.numbers - end) > _APART * family.scale for end in ends)
                     if np.isfinite(fit.size) and is_new:
                         ends.append(fit.numbers)
-                        yield self._candidate(family, fit)
+                        candidate = self._candidate(family, fit)
+                        yield candidate
+                        if self._is_exact(candidate):
+                            break
 
     def _has_motion(self, family: Family, number: float) -> bool:
         with suppress(ValueError):

@@ -69,14 +69,21 @@ def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion |
     steps = 1 if answer.stepping else _enough_steps(equations, arcs, rows)
     scale = np.concatenate([answer.sizes, np.ones(4), np.full(3, answer.reach)])[:count]
 
+    has_kinks_ahead, of_kinks = has_kinks(equations), list[Floats]()
+
     def go(z: Floats, is_near: bool) -> Floats:
-        through = moved_through if is_near else Arcs.moved
-        return through(arcs, equations, z, steps)
+        ends = arcs.moved(equations, z, steps)
+        if not (is_near and has_kinks_ahead):
+            return ends
+        # What kinks change is the same wherever the rows are near, but for a small part of this little.
+        if not of_kinks:
+            of_kinks.append(moved_through(arcs, equations, z, steps) - ends)
+        return ends + of_kinks[0]
 
     def ahead(z: Floats, is_fine: bool) -> Floats:
         return arcs.moved(equations, z, steps if is_fine else max(1, steps // FEWER))
 
-    if not _shoot(rows, go, ahead, scale, is_near=not has_kinks(equations)):
+    if not _shoot(rows, go, ahead, scale, is_near=not has_kinks_ahead):
         return None
     motion = Motion(
         rows[:, :n],
