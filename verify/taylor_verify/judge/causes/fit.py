@@ -291,14 +291,17 @@ def across(basis: Floats, vector: Floats) -> Floats:
 
 
 def least_rest(
-    rest: Callable[[Floats], Floats], numbers: Floats, scale: Floats, shift: float
+    rest: Callable[[Floats], Floats], numbers: Floats, scale: Floats, shift: float, enough: float
 ) -> Floats:
-    """Return numbers that leave less, by Newton's method. Raises ValueError where no motion is reached."""
+    """Return numbers that leave less, or ``enough``, by Newton's method.
+
+    Raises ValueError where no motion is reached.
+    """
     last = np.inf
     for _ in range(_FEW_ROUNDS):
         base = rest(numbers)
         largest = float(np.max(np.abs(base)))
-        if largest > 0.5 * last or largest < _SETTLED:
+        if largest > 0.5 * last or largest < max(_SETTLED, enough):
             break
         ahead = [rest(numbers + step) for step in shift * np.diag(scale)]
         slopes = (np.array(ahead) - base).T / shift

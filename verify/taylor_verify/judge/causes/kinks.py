@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Final
 
@@ -18,7 +18,7 @@ import numpy as np
 from taylor_verify.judge.causes.arcs import Arcs, moved
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.changed_equations import Equations
-from taylor_verify.judge.causes.float_answer import Answer, Places
+from taylor_verify.judge.causes.float_answer import Places
 from taylor_verify.judge.causes.limits import arguments
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import places
@@ -27,13 +27,13 @@ from taylor_verify.scenes.loads.vocabulary import VECTORS
 
 _CALL: Final = re.compile(r"\b(abs|clip|max|min)\(")
 # Of more arcs with a kink none is stepped to it, nor over more kinks of one arc.
-_MOST: Final = 12
+_MOST: Final = 128
 _MOST_OF_ARC: Final = 8
 _ROUNDS: Final = 8
 # A part of the motion by which no step over a kink matters.
 _NOTHING: Final = 1e-9
 # Of what may be spent yet, this part may be spent on kinks at once.
-_SHARE: Final = 0.2
+_SHARE: Final = 0.4
 # A step ends at a kink if it comes to this part of the step.
 _AT: Final = 1e-9
 
@@ -53,10 +53,11 @@ def moved_through(arcs: Arcs, equations: Equations, begin: Floats, steps: int) -
     if answer.stepping is not None or not has_kinks(equations):
         return ends
     with suppress(Spent), answer.budget.at_most(_SHARE * answer.budget.left):
-        for k in _over_kinks(equations, arcs, begin[:1], ends[:1], steps):
-            first = _of_arcs(equations, np.s_[k : k + 1])
-            arc = begin[0, :, k], float(arcs.since[k]), float(arcs.spans[k])
-            ends[:, :, k] += _through_kinks(answer, first, *arc, steps) - ends[0, :, k]
+        over = _over_kinks(equations, arcs, begin[:1], ends[:1], steps)
+        if len(over):
+            some = replace(arcs, first=arcs.first[over], last=arcs.last[over])
+            through = _Stepped(some, _of_arcs(equations, over)).through(begin[0, :, over].T, steps)
+            ends[:, :, over] += through - ends[0, :, over].T
     return ends
 
 
@@ -83,52 +84,66 @@ def _over_kinks(equations: Equations, arcs: Arcs, begin: Floats, end: Floats, st
     return over[np.any(off > least, axis=0)]
 
 
-def _through_kinks(
-    answer: Answer, equations: Equations, begin: Floats, since: float, span: float, steps: int
-) -> Floats:
-    """Return the end of one arc from a state (components,), in so many steps and some more at kinks."""
-    z, now, left, kinks = begin, since, span, 0
-    while left:
-        h = span / steps if abs(left) > abs(span / steps) * (1 + _AT) else left
-        end = _step(answer, equations, z, now, h)
-        part = _to_kink(answer, equations, z, now, h, end) if kinks < _MOST_OF_ARC else None
-        if part is not None:
-            kinks, h = kinks + 1, part
-            end = _step(answer, equations, z, now, h)
-        z, now, left = end, now + h, left - h
-    return z
+@dataclass(frozen=True)
+class _Stepped:
+    """Arcs that are stepped to their kinks at once. States have the axes (components, arcs)."""
 
+    arcs: Arcs
+    equations: Equations
 
-def _step(answer: Answer, equations: Equations, z: Floats, since: float, h: float) -> Floats:
-    ends = moved(answer, equations, z[None, :, None], np.array([since]), np.array([h]), 1)
-    return np.asarray(ends[0, :, 0])
+    def through(self, begin: Floats, steps: int) -> Floats:
+        """Return the ends of the arcs in so many steps, and some more at kinks."""
+        spans = self.arcs.spans
+        z, now, left = begin.copy(), self.arcs.since.copy(), spans.copy()
+        count = np.zeros(len(spans), dtype=int)
+        while len(some := np.flatnonzero(left)):
+            whole = spans[some] / steps
+            h = np.where(np.abs(left[some]) > np.abs(whole) * (1 + _AT), whole, left[some])
+            end = self._moved(some, z[:, some], now[some], h)
+            part = self._to_kinks(some, z[:, some], now[some], h, end)
+            at = np.flatnonzero(np.isfinite(part) & (count[some] < _MOST_OF_ARC))
+            if len(at):
+                short = some[at]
+                count[short] += 1
+                h[at] = part[at]
+                end[:, at] = self._moved(short, z[:, short], now[short], h[at])
+            z[:, some], now[some], left[some] = end, now[some] + h, left[some] - h
+        return z
 
+    def _moved(self, some: Places, z: Floats, since: Floats, h: Floats) -> Floats:
+        equations = _of_arcs(self.equations, some)
+        return np.array(moved(self.arcs.answer, equations, z[None], since, h, 1)[0])
 
-def _to_kink(
-    answer: Answer, equations: Equations, z: Floats, since: float, h: float, end: Floats
-) -> float | None:
-    """Return the part of a step after which the first kink comes, by the secant method; None of none."""
-    first, last = _at(equations, z, since), _at(equations, end, since + h)
-    size = np.maximum(np.abs(first), np.abs(last))
-    crossed = np.flatnonzero((first * last < 0) & (np.abs(first) > _AT * size))
-    if not len(crossed):
-        return None
-    k = min(crossed, key=lambda k: first[k] / (first[k] - last[k]))
-    a, b, at_a, at_b = 0.0, h, float(first[k]), float(last[k])
-    for _ in range(_ROUNDS):
-        if at_b == at_a:
-            break
-        guess = float(np.clip(b - at_b * (b - a) / (at_b - at_a), min(0.0, h), max(0.0, h)))
-        a, at_a, b = b, at_b, guess
-        if abs(b - a) <= _AT * abs(h):
-            break
-        at_b = float(_at(equations, _step(answer, equations, z, since, b), since + b)[k])
-    is_inside = _AT * abs(h) < abs(b) < (1 - _AT) * abs(h)
-    return b if is_inside else None
+    def _at(self, some: Places, z: Floats, times: Floats) -> Floats:
+        return _values(_of_arcs(self.equations, some), z[None], times)
 
-
-def _at(equations: Equations, z: Floats, time: float) -> Floats:
-    return _values(equations, z[None, :, None], np.array([time]))[:, 0]
+    def _to_kinks(self, some: Places, z: Floats, since: Floats, h: Floats, end: Floats) -> Floats:
+        """Return the parts of steps after which their first kinks come, by secants; NaN of none."""
+        first, last = self._at(some, z, since), self._at(some, end, since + h)
+        size = np.maximum(np.abs(first), np.abs(last))
+        is_crossed = (first * last < 0) & (np.abs(first) > _AT * size)
+        parts, at = np.full(len(h), np.nan), np.flatnonzero(np.any(is_crossed, axis=0))
+        if not len(at):
+            return parts
+        with np.errstate(all="ignore"):
+            early = np.where(is_crossed, first / (first - last), np.inf)[:, at]
+        k = np.argmin(early, axis=0), np.arange(len(at))
+        h, z, since, some = h[at], z[:, at], since[at], some[at]
+        a, b, at_a, at_b = np.zeros(len(at)), h.copy(), first[:, at][k], last[:, at][k]
+        for _ in range(_ROUNDS):
+            with np.errstate(all="ignore"):
+                step = at_b * (b - a) / (at_b - at_a)
+            guess = np.clip(
+                b - np.where(np.isfinite(step), step, 0.0), np.minimum(0, h), np.maximum(0, h)
+            )
+            if np.all(np.abs(guess - b) <= _AT * np.abs(h)):
+                b = guess
+                break
+            a, at_a, b = b, at_b, guess
+            at_b = self._at(some, self._moved(some, z, since, b), since + b)[k]
+        is_inside = (_AT * np.abs(h) < np.abs(b)) & (np.abs(b) < (1 - _AT) * np.abs(h))
+        parts[at] = np.where(is_inside, b, np.nan)
+        return parts
 
 
 def _values(equations: Equations, states: Floats, times: Floats) -> Floats:

@@ -167,9 +167,12 @@ class Choice:
             # One of many steps fits the size of an error whose form is another method's.
             most /= candidate.method.count
         most = max(most * _OF_EACH_NUMBER ** max(0, count - 1), NOTHING)
-        if proof.worst <= min(PAIR, most) and self._is_evident(proof):
+        can_be_better = count > 0 and self._polished < _POLISHED
+        # One number costs no more to fit once more than to be tried with fewer digits.
+        tries_short = count > 1 or not can_be_better
+        if proof.worst <= min(PAIR, most) and self._is_evident(proof, tries_short):
             return proof
-        if count and self._polished < _POLISHED:
+        if can_be_better:
             self._polished += 1
             better = self._refitted(candidate)
             if better is not None and better.worst < proof.worst:
@@ -180,7 +183,7 @@ class Choice:
         is_proven = proof.worst <= allowed and not proof.candidate.is_nothing
         return proof if is_proven and self._is_evident(proof) else None
 
-    def _is_evident(self, proven: _Proven) -> bool:
+    def _is_evident(self, proven: _Proven, tries_short: bool = True) -> bool:
         """Return True if what a candidate leaves is none of another law, which its numbers imitate.
 
         It is the rounding, or what a fair simulator or a sensor leaves, or the numbers are short. Two drags
@@ -195,6 +198,8 @@ class Choice:
             self._leaves_rounding(proven, self.groups) or self._leaves_noise(proven)
         ):
             return True
+        if not tries_short:
+            return False
         differences = family.right + _short(candidate.numbers - family.right)
         for numbers in (_short(candidate.numbers), differences):
             short = self._left(replace(candidate, numbers=numbers))
@@ -258,6 +263,7 @@ class Choice:
         With the attitude both are fitted, by their roundings.
         """
         few, family = self.answer.thinned(FIT_ROWS), candidate.family
+        rounding = float(np.max(few.rounding))
 
         def rest(numbers: Floats) -> Floats:
             motion = candidate.motion(few, family.changes(numbers))
@@ -270,11 +276,11 @@ class Choice:
             assert motion.q is not None
             signs = np.sign(np.sum(few.file.q * motion.q, axis=1, keepdims=True))
             turned = (few.file.q * signs - motion.q).ravel() / max(few.noise[1], _FLOAT64)
-            return np.concatenate([off / np.max(few.rounding), turned]) * np.max(few.rounding)
+            return np.concatenate([off, turned * rounding])
 
         for shift in _SHIFTS:
             with suppress(ValueError):
-                numbers = least_rest(rest, candidate.numbers, family.scale, shift)
+                numbers = least_rest(rest, candidate.numbers, family.scale, shift, 2 * rounding)
                 return self._left(replace(candidate, numbers=numbers))
         return None
 
