@@ -211,7 +211,7 @@ def single(i: int, j: int, k: int, power: int = 0) -> Rate:
             (FREE, by_the_speed(), "moment -k |w| w, with k"),
             (FREE, by_the_speed(1.5), None),
             (FREE, by_the_speed(1, (1, 2, 3)), None),
-            (FREE, damped_alone, "factor of the gyroscopic term and damping"),
+            (FREE, damped_alone, "tensor of a sphere and one drag on all rates of turn"),
             (WHEELS, without_wheels, "wheels left out"),
             (WHEELS, wheels_turned_round, "wheels with the other sign"),
             (WHEELS, of_tensor(1.05), "factor of the tensor in the gyroscopic term"),
