@@ -11,7 +11,6 @@ import pytest
 from taylor_verify.exact.rates import float_flow
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.errors.quick_motion import QuickMotion
-from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
@@ -24,12 +23,7 @@ def quick_from(scene: Scene, rows: list[int]) -> QuickMotion:
     """The motion from some of a scene's rows."""
     elapsed = [scene.clock.elapsed[k] for k in rows]
     known = solution(scene).motion(elapsed, DIGITS).quantities
-    return QuickMotion(float_flow(scene), known, in_units(scene, elapsed))
-
-
-def in_units(scene: Scene, times: list[Fraction]) -> np.ndarray:
-    unit = power_of_two(float_flow(scene).time)
-    return np.array([float(t / unit) for t in times])
+    return QuickMotion(float_flow(scene), known, float_flow(scene).times(elapsed))
 
 
 @pytest.mark.parametrize("name", ["euler/backward", "kirchhoff/whole-motion", SLOW_START])
@@ -41,7 +35,7 @@ def test_float64_follows_the_motion_from_few_rows(name: str, rows: list[int]) ->
     end = scene.clock.elapsed[max(rows) + 1]
     for share in (Fraction(-1, 7), Fraction(3, 10), Fraction(9, 8)):
         times = [end * share, end * share / 3]
-        states = quick.at(in_units(scene, times))
+        states = quick.at(float_flow(scene).times(times))
         assert states is not None
         near = flow.quantities(states)
         for quantity, exactly in solution(scene).motion(times, DIGITS).quantities.items():
@@ -66,8 +60,8 @@ def test_a_motion_that_explodes_backwards_is_followed_where_it_is_wanted() -> No
     """A damped body cannot be followed far before its start; rows after it are none the worse."""
     scene = load("euler/damped")
     quick, times = quick_from(scene, [0]), list(scene.clock.elapsed)
-    assert quick.at(in_units(scene, [Fraction(-(10**4))])) is None
-    states = quick.at(in_units(scene, [times[3]]))
+    assert quick.at(float_flow(scene).times([Fraction(-(10**4))])) is None
+    states = quick.at(float_flow(scene).times([times[3]]))
     assert states is not None
     expected = solution(scene).motion([times[3]], DIGITS)["omega"].astype(float)
     assert np.allclose(float_flow(scene).quantities(states)["omega"], expected, rtol=0, atol=1e-7)

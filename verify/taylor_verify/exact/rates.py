@@ -6,8 +6,9 @@ difference of two motions is taken.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Final
 
@@ -65,6 +66,11 @@ class FloatFlow:
     units: Mapping[str, int]
     time: int
     scaled: Scaled
+
+    def times(self, elapsed: Sequence[Fraction]) -> Floats:
+        """Times since the start in the unit of the equations."""
+        unit = power_of_two(self.time)
+        return np.array([float(t / unit) for t in elapsed])
 
     def states(self, quantities: Mapping[str, np.ndarray[Any, Any]]) -> Floats:
         """The states of the rows of a motion, in the scene's own units before."""

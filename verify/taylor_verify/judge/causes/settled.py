@@ -334,11 +334,8 @@ class Choice:
 
     def _shortened(self, proven: _Proven) -> _Proven:
         """Return a candidate with the fewest digits of its numbers that explain as much."""
-        candidate, family, numbers = (
-            proven.candidate,
-            proven.candidate.family,
-            proven.candidate.numbers,
-        )
+        candidate = proven.candidate
+        family, numbers = candidate.family, candidate.numbers
         allowed = max(2 * proven.worst, self._least / ROUNDINGS, NOTHING)
         if not 0 < family.count <= FEW:
             return proven

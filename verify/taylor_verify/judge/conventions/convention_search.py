@@ -43,7 +43,7 @@ from taylor_verify.judge.conventions.worlds import World, worlds
 from taylor_verify.judge.errors.quick_motion import QuickMotion
 from taylor_verify.judge.velocities import velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
-from taylor_verify.numbers.precision import Rung, power_of_two
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock
@@ -269,12 +269,10 @@ class _Search:
             return False
         if exact.route != "taylor":
             return True
-        first = exact.evaluate([Fraction(0)], _DIGITS)
         if given.body.loads is not None:
             return True
-        flow = float_flow(given)
-        times = np.array([float(t / power_of_two(flow.time)) for t in given.clock.elapsed])
-        states = QuickMotion(flow, first, np.zeros(1)).at(times)
+        flow, first = float_flow(given), exact.evaluate([Fraction(0)], _DIGITS)
+        states = QuickMotion(flow, first, np.zeros(1)).at(flow.times(given.clock.elapsed))
         if states is None:
             return True
         quick = flow.quantities(states)

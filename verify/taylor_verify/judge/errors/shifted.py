@@ -142,8 +142,7 @@ class Run:
     @cached_property
     def quick(self) -> QuickMotion:
         """The exact motion in float64."""
-        since = np.array([float(t / self.unit) for t in self.elapsed])
-        return QuickMotion(self.flow, self.truth.quantities, since)
+        return QuickMotion(self.flow, self.truth.quantities, self.flow.times(self.elapsed))
 
     @cached_property
     def elapsed(self) -> Sequence[Fraction]:
@@ -159,13 +158,15 @@ class Run:
 class Compared:
     """A quantity of an answer, compared with the exact motion at any shifts.
 
-    ``places`` are the samples that are compared, ``unshifted`` is their comparison without a shift. At
-    other times than the samples the motion is taken in float64, unless ``is_exact``.
+    ``places`` are the samples that are compared, ``forms`` the compared parts over their scales as linear
+    forms of a state, and ``unshifted`` is the comparison without a shift. At other times than the samples
+    the motion is taken in float64, unless ``is_exact``.
     """
 
     run: Run
     errors: Errors
     places: Places
+    forms: Floats
     unshifted: Shifted
     is_exact: bool = False
 
@@ -175,8 +176,9 @@ class Compared:
         places, scales = np.arange(len(run.elapsed)), _scales(errors)
         error, size = _relative(run.scene.body, run.answer, run.truth, scales)
         states = run.quick.rows
-        start = _shifted(run, _forms(run, scales), np.zeros(len(error)), error, size, states)
-        return cls(run, errors, places, start)
+        forms = _forms(run, scales)
+        start = _shifted(run, forms, np.zeros(len(error)), error, size, states)
+        return cls(run, errors, places, forms, start)
 
     def without(self, strays: Sequence[int]) -> Compared:
         """Return the comparison without these samples."""
@@ -220,11 +222,11 @@ class Compared:
         beyond, start = self.run.quick.beyond(self.places, -shift), self.unshifted
         if beyond is None:
             return None
-        error = start.error - beyond @ self._forms.T / start.size
+        error = start.error - beyond @ self.forms.T / start.size
         factor = 2.0 ** frexp(float(np.max(np.abs(error))))[1]
         states = self.run.quick.rows[self.places] + beyond
         size = start.size * factor
-        fit = _shifted(self.run, self._forms, shift, error / factor, size, states)
+        fit = _shifted(self.run, self.forms, shift, error / factor, size, states)
         return fit if fit.is_finite else None
 
     def _exactly(self, shift: Floats) -> Shifted | None:
@@ -240,7 +242,7 @@ class Compared:
         answer = run.answer.at(self.places.tolist())
         error, size = _relative(run.scene.body, answer, motion, self._scales)
         states = run.flow.states(motion.quantities)
-        fit = _shifted(run, self._forms, shift, error, size, states)
+        fit = _shifted(run, self.forms, shift, error, size, states)
         return fit if fit.is_finite else None
 
     def left_by(self, steps: Floats, shape: Floats) -> Floats | None:
@@ -251,7 +253,7 @@ class Compared:
         if beyond is None:
             return None
         with np.errstate(all="ignore"):
-            errors = start.error[some] * start.size - beyond @ self._forms.T
+            errors = start.error[some] * start.size - beyond @ self.forms.T
             left = np.mean(np.sum(errors**2, axis=1).reshape(len(steps), -1), axis=1)
         return np.where(np.isfinite(left), left, inf)
 
@@ -267,10 +269,6 @@ class Compared:
     @cached_property
     def _scales(self) -> dict[str, Any]:
         return _scales(self.errors)
-
-    @cached_property
-    def _forms(self) -> Floats:
-        return _forms(self.run, self._scales)
 
 
 def _scales(errors: Errors) -> dict[str, Any]:
