@@ -79,10 +79,19 @@ def test_a_motion_that_is_not_reached_from_its_own_start_has_no_cause(
     assert json.loads(measure.said_of((69, name, 1)))["sentences"] == []
 
 
-def test_a_missed_switch_is_named_with_its_time() -> None:
-    """A thrust that does not end is a switch that was missed, and no other number."""
-    (sentence,) = json.loads(said_of((1, "switch missed", 1)))["sentences"]
-    assert sentence.startswith("switch at t = 1.072 missed; leaves")
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("switch missed", "switch at t = 1.072 missed; leaves"),
+        ("rate of the current left out", "the rate of the current in body axes is left out of the"),
+        ("C_A over ground", "the Coriolis terms of the added mass take the velocity over ground"),
+        ("added mass over ground", "the added mass moves over ground, not through the water: M_A"),
+    ],
+)
+def test_one_fault_of_a_vehicle_has_one_sentence(kind: str, words: str) -> None:
+    """A thrust that does not end is a switch that was missed, and terms over ground are no other number."""
+    (sentence,) = json.loads(said_of((1, kind, 1)))["sentences"]
+    assert sentence.startswith(words)
 
 
 def test_silence_is_right_where_no_fault_has_a_name() -> None:

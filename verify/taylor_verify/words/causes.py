@@ -73,9 +73,11 @@ def with_numbers(
     What changes by no more than some of its ``errors``, where they are known, agrees.
     """
     values = [float(number) for number in numbers]
-    if name == "clock" and abs(values[0]) < _STILL:
+    # A number of the scene, which may be called so, has labels.
+    is_clock = name == "clock" and not labels
+    if is_clock and abs(values[0]) < _STILL:
         return "clock = 0: the motion stands still"
-    if name == "clock" and values[0] > 0:
+    if is_clock and values[0] > 0:
         return f"clock = {values[0]:.6g}: {_pace(values[0])}"
     if name.startswith("switch at "):
         return f"{name} comes at t = {values[0]:.6g}"

@@ -1,26 +1,53 @@
-"""Limits of loads that the scene does not have, as actuators have them."""
+"""Limits of loads, as actuators have them: others than the scene's, and new ones."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.changed_equations import Changes
-from taylor_verify.judge.causes.changed_texts import has_text
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.changed_texts import NAME, has_text
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.float_answer import Answer, velocities_of
+from taylor_verify.judge.causes.limits import bounds
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.written_numbers import Number, numbers
 from taylor_verify.models.acting import Acting
 from taylor_verify.numbers.tensors import ZERO_VECTOR
+from taylor_verify.scenes.loads.loads import Loads
 
 # Parts of the largest load at which the fit of a limit begins.
 _BEGINS: Final = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.92)
+_FACTORS: Final = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.92, 1.2, 1.6, 2.5)
 _EACH: Final = "a limit of the {} on each axis"
 _LENGTH: Final = "a limit of the length of the {}"
+
+
+def has_limits(right: Equations) -> bool:
+    """Return True if a text of the scene has a clip."""
+    return right.loads is not None and bool(bounds(right.loads))
+
+
+def own_limits(right: Equations) -> Iterator[tuple[Family, Floats]]:
+    """Yield the limits that a scene has, and where their fits may begin: what none limits has no slope."""
+    if right.loads is not None and has_limits(right):
+        ends = bounds(right.loads)
+        for number in numbers(right.loads):
+            if _moved(number, ends, number.put(2 * number.value)) == 2:
+                yield number.family(right), number.value * np.array(_FACTORS)
+
+
+def _moved(number: Number, ends: Sequence[tuple[str, str]], other: Loads) -> int:
+    """Return how many ends of a clip another value of a number moves, at most."""
+    changed = zip(ends, bounds(other), strict=True)
+    return max(
+        sum(one != two or number.name in NAME.findall(one) for one, two in zip(*pair, strict=True))
+        for pair in changed
+    )
 
 
 def new_limits(answer: Answer) -> Iterator[tuple[Family, Floats]]:

@@ -80,7 +80,7 @@ class Candidate:
             return True
         if self.kind == "damping step":
             return not self.numbers[0] > _SLIGHT * self.family.scale[0]
-        is_factor = self.kind == "clock" or "factor" in self.family.name
+        is_factor = self.family.right[0] == 1.0
         is_alone = self.count == 1 or self.kind == "pair"
         return is_factor and is_alone and f"{self.numbers[0]:.6g}" == "1"
 

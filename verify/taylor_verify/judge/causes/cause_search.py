@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes import starts
+from taylor_verify.judge.causes.actuator_limits import has_limits
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import Dynamics
@@ -157,7 +158,8 @@ def _of_moving_part(answer: Answer) -> list[Cause]:
         defects = starts.roundings(answer)
         # Another pulse is nearer than a part of the run without it.
         wrong = starts.wrong_arcs(defects)
-        is_part = len(answer.right.switches) and 0 < 2 * len(wrong) < len(defects)
+        has_parts = len(answer.right.switches) > 0 or has_limits(answer.right)
+        is_part = has_parts and 0 < 2 * len(wrong) < len(defects)
         causes = _some(in_numbers(answer, wrong)) if is_part else []
         causes = causes or causes_in_pieces(answer, defects, causes_of) or _some(search.cause())
         return causes or _from_own_start(answer)

@@ -13,10 +13,23 @@ from itertools import combinations, product
 from typing import Final
 
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.texts import HANGING, Place, places, rational, texts_of_vectors
-from taylor_verify.numbers.tensors import ZERO_VECTOR, scaled
-from taylor_verify.scenes.loads.loads import Hung, Loads
-from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS, Entry
+from taylor_verify.judge.causes.texts import (
+    Place,
+    places,
+    rational,
+    texts_of_vectors,
+    with_entry,
+)
+from taylor_verify.numbers.tensors import ZERO_VECTOR
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.vocabulary import (
+    CENTRE,
+    INERTIA,
+    QUATERNION,
+    ROTATION,
+    VECTORS,
+    Entry,
+)
 
 NAME: Final = re.compile(r"\b[A-Za-z_]\w*\b")
 _COMPONENT: Final = re.compile(r"\babs\(([uw])[123]\)")
@@ -27,6 +40,13 @@ _AXES: Final = (1, 2, 3)
 _PAIRS: Final = tuple(product(_AXES, repeat=2))
 _TENSOR: Final = frozenset(INERTIA)
 _Names = Mapping[str, str]
+
+
+def _in_space(letter: str) -> _Names:
+    """Return the texts of the components of a vector in space axes."""
+    return {f"{letter}{i}": f"({' + '.join(f'r{i}{k}*{letter}{k}' for k in _AXES)})" for i in _AXES}
+
+
 _ALWAYS: Final[dict[str, _Names]] = {
     "the loads have R for R^T": {f"r{i}{k}": f"r{k}{i}" for i, k in _PAIRS},
     "the loads read the quaternion with the scalar last, which comes first": {
@@ -37,6 +57,8 @@ _ALWAYS: Final[dict[str, _Names]] = {
     },
     "the loads have no products of inertia": {f"I{i}{k}": "0" for i, k in _PAIRS if i != k},
     "the loads have no abs: u1*u1 for abs(u1)*u1": {"abs": ""},
+    "the loads read the velocity in space axes": _in_space("u"),
+    "the loads read omega in space axes": _in_space("w"),
     "the loads take omega in degrees": {f"w{i}": f"(180/pi*w{i})" for i in _AXES},
     "the loads take omega in radians for degrees": {f"w{i}": f"(pi/180*w{i})" for i in _AXES},
 }
@@ -48,16 +70,18 @@ _SPEEDS: Final[dict[str, Callable[[str], str]]] = {
         lambda text: _COMPONENT.sub("1", _LENGTH.sub("1", text))
     ),
 }
+_SIGNS: Final = (("left out", "0*"), ("with the other sign", "-"))
+VELOCITIES: Final = frozenset(f"{letter}{i}" for letter in "uw" for i in _AXES)
 _WRONG_WAY: Final = "turned the wrong way, by R"
 # What is done to three parts of texts, one for each axis, beside which three others stay.
 _Change = Callable[[Sequence[str], int], str]
 _CHANGES: Final[dict[str, _Change]] = {
     "left out": lambda parts, i: "0",
-    "with the other sign": lambda parts, i: _sum([("-1", parts[i])]),
-    "in space axes": lambda parts, i: _sum(
+    "with the other sign": lambda parts, i: sum_of([("-1", parts[i])]),
+    "in space axes": lambda parts, i: sum_of(
         zip((f"r{k}{i + 1}" for k in _AXES), parts, strict=True)
     ),
-    _WRONG_WAY: lambda parts, i: _sum(zip((f"r{i + 1}{k}" for k in _AXES), parts, strict=True)),
+    _WRONG_WAY: lambda parts, i: sum_of(zip((f"r{i + 1}{k}" for k in _AXES), parts, strict=True)),
 }
 
 
@@ -73,7 +97,7 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
             yield words, other
     yield from _other_speeds(loads)
     yield from _exchanged(loads)
-    yield from _hung_otherwise(loads)
+    yield from _named_otherwise(loads)
     for name, entries in loads.vectors:
         if has_text(entries):
             turned = _with_part(loads, [name], lambda term: True, _CHANGES[_WRONG_WAY])
@@ -130,6 +154,18 @@ def _by_components(loads: Loads) -> Loads:
     return loads
 
 
+def _named_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
+    """Yield each definition by a text, and each vector of [space], left out or with the other sign."""
+    for (k, (name, entry)), (words, sign) in product(enumerate(loads.definitions), _SIGNS):
+        if rational(entry) is None:
+            other = with_entry(loads.definitions, k, (name, f"{sign}({entry})"))
+            yield f"{name} {words}", replace(loads, definitions=other)
+    for (k, (name, entries)), (words, sign) in product(enumerate(loads.space), _SIGNS):
+        vector = tuple(f"{sign}({decimal(entry)})" for entry in entries)
+        other = with_entry(loads.space, k, (name, vector))
+        yield f"{name} of [space] {words}", replace(loads, space=other)
+
+
 def _exchanged(loads: Loads) -> Iterator[tuple[str, Loads]]:
     """Yield two numbers of [define] exchanged, of scenes with a few."""
     numbers = [k for k, (_, entry) in enumerate(loads.definitions) if rational(entry) is not None]
@@ -173,17 +209,17 @@ def key_of(place: Place) -> str:
 def _of_scene(loads: Loads) -> Iterator[tuple[str, _Names]]:
     """Yield the exchanges by the vectors that are given in space axes, and by the current."""
     for name, entries in loads.space:
-        turned = {f"{name}{i}": _turned(entries, "r{0}{1}", i) for i in _AXES}
+        turned = {f"{name}{i}": turned_entry(entries, "r{0}{1}", i) for i in _AXES}
         yield f"{name} of [space] is turned the wrong way, by R for R^T", turned
         plain = {f"{name}{i}": f"({entry})" for i, entry in zip(_AXES, entries, strict=True)}
         yield f"{name} of [space] is not turned into body axes", plain
     if any(loads.current):
-        ground = {f"u{i}": f"(u{i} + {_turned(loads.current, 'r{1}{0}', i)})" for i in _AXES}
+        ground = {f"u{i}": f"(u{i} + {turned_entry(loads.current, 'r{1}{0}', i)})" for i in _AXES}
         yield "the loads take the velocity over ground, not that through the water", ground
 
 
-def _turned(entries: tuple[Entry, ...], entry: str, i: int) -> str:
-    terms = (f"{entry.format(i, k)}*({_decimal(x)})" for k, x in zip(_AXES, entries, strict=True))
+def turned_entry(entries: tuple[Entry, ...], entry: str, i: int) -> str:
+    terms = (f"{entry.format(i, k)}*({decimal(x)})" for k, x in zip(_AXES, entries, strict=True))
     return f"({' + '.join(terms)})"
 
 
@@ -195,21 +231,30 @@ def _parts(loads: Loads) -> Iterator[tuple[str, tuple[str, ...], Callable[[str],
 
     What the equations say without texts is left to them: all of a vector, and of both.
     """
-    moving = moving_names(loads)
-    reads = {
-        name: {
-            _reads(moving, term) for text in map(str, own) for term in terms(text) if term != "0"
-        }
+    moving, situated = (readers(loads, names) for names in (VELOCITIES, _situated(loads)))
+    kinds: dict[str, Callable[[str], bool]] = {
+        "without velocities": lambda term: not _reads(moving, term),
+        "that read more than velocities": lambda term: _reads(situated, term),
+    }
+    split = {
+        name: {term for text in map(str, own) for term in terms(text) if term != "0"}
         for name, own in loads.vectors
     }
-    some = [name for name, own in reads.items() if own]
+    some = [name for name, own in split.items() if own]
     for names in [*((name,) for name in some), *[tuple(some)] * (len(some) > 1)]:
-        noun, has_still = " and ".join(names), all(False in reads[name] for name in names)
+        noun = " and ".join(names)
         if loads.hung:
             yield f"{noun}, but for weight and buoyancy,", names, lambda term: True
-        if has_still and any(True in reads[name] for name in names):
-            without = f"terms of {noun} without velocities"
-            yield without, names, lambda term: not _reads(moving, term)
+        known = [{term for name in names for term in split[name]}]
+        for words, is_part in kinds.items():
+            part = {term for term in known[0] if is_part(term)}
+            if (
+                part not in known
+                and not part.isdisjoint(split[names[0]])
+                and not part.isdisjoint(split[names[-1]])
+            ):
+                known.append(part)
+                yield f"terms of {noun} {words}", names, is_part
 
 
 def _reads(names: frozenset[str], text: str) -> bool:
@@ -244,7 +289,7 @@ def _plus(one: Entry, other: str) -> str:
     return f"({one}) + {other}" if str(one) != "0" else other
 
 
-def _sum(products: Iterable[tuple[str, str]]) -> str:
+def sum_of(products: Iterable[tuple[str, str]]) -> str:
     """Return the sum of products, of which those with a zero are left out."""
     return " + ".join(f"{a}*({b})" for a, b in products if b != "0" and a != "(0)") or "0"
 
@@ -276,83 +321,23 @@ def terms(text: str) -> list[str]:
     return [*parts, text[begin:]]
 
 
-def moving_names(loads: Loads) -> frozenset[str]:
-    """Return the names of velocities, and of all definitions that read one."""
-    names = {f"{letter}{i}" for letter in "uw" for i in _AXES}
+def readers(loads: Loads, names: frozenset[str]) -> frozenset[str]:
+    """Return some names, and those of all definitions that read one of them."""
     for _ in loads.definitions:
-        for name, entry in loads.definitions:
-            if isinstance(entry, str) and not names.isdisjoint(NAME.findall(entry)):
-                names.add(name)
-    return frozenset(names)
+        more = (name for name, entry in loads.definitions if _reads(names, str(entry)))
+        names = names.union(more)
+    return names
 
 
-# Weight and buoyancy.
+def _situated(loads: Loads) -> frozenset[str]:
+    """Return the names of what is no velocity: time, place and attitude, [space], tables and states."""
+    space = (f"{name}{i}" for name, _ in loads.space for i in _AXES)
+    states = (name for state in loads.states for name in state.components)
+    tables = (name for name, _ in loads.tables)
+    return frozenset(("t", *QUATERNION, *ROTATION, *CENTRE, *space, *states, *tables))
 
 
-def _hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
-    """Yield weight and buoyancy, each and both, left out, at the origin, or fixed in body axes."""
-    has_force = [k for k, hung in enumerate(loads.hung) if any(hung.force)]
-    points = [hung.at for hung in loads.hung]
-    if len(has_force) > 1 and points[0] != points[1]:
-        pairs = zip(loads.hung, reversed(points), strict=True)
-        exchanged = tuple(Hung(hung.force, at) for hung, at in pairs)
-        yield "points of weight and buoyancy exchanged", replace(loads, hung=exchanged)
-    for some in [*([k] for k in has_force), *[has_force] * (len(has_force) > 1)]:
-        noun = " and ".join(HANGING[k] for k in some)
-        without = with_hung(loads, some, lambda hung: Hung(ZERO_VECTOR))
-        yield f"{noun} left out", without
-        if any(any(loads.hung[k].at) for k in some):
-            yield f"{noun} at the origin", with_hung(loads, some, lambda hung: Hung(hung.force))
-            if loads.model == "kirchhoff":
-                # Of a rigid body weight is a moment, and no more.
-                words = f"couple of {noun} with the other sign"
-                yield words, with_hung(loads, some, _turned_round)
-        fixed = without
-        for k in some:
-            fixed = added(fixed, _texts_of(loads.hung[k], is_in_body=True))
-        yield f"{noun} fixed in body axes", fixed
-
-
-def with_hung(loads: Loads, some: Sequence[int], change: Callable[[Hung], Hung]) -> Loads:
-    """Return the loads with a change of weight, buoyancy, or both."""
-    hung = (change(each) if k in some else each for k, each in enumerate(loads.hung))
-    return replace(loads, hung=tuple(hung))
-
-
-def _turned_round(hung: Hung) -> Hung:
-    """Return a force whose couple has the other sign: it acts at the opposite point."""
-    return Hung(hung.force, scaled(Fraction(-1), hung.at))
-
-
-def written_out(loads: Loads) -> Loads:
-    """Return the same loads with weight and buoyancy as texts of force and couple."""
-    for hung in loads.hung:
-        loads = added(loads, _texts_of(hung))
-    return replace(loads, hung=())
-
-
-def _texts_of(hung: Hung, is_in_body: bool = False) -> dict[str, list[str]]:
-    """Return the force and the couple of a hung force; with ``is_in_body`` it is fixed in body axes.
-
-    The couple is the moment of a rigid body, whose origin is held.
-    """
-    force = [
-        _decimal(hung.force[i])
-        if is_in_body
-        else _sum((f"r{k}{i + 1}", _decimal(f)) for k, f in zip(_AXES, hung.force, strict=True))
-        for i in range(3)
-    ]
-    places = ((1, 2), (2, 0), (0, 1))
-    couple = [
-        _sum(
-            [(f"({_decimal(hung.at[j])})", force[k]), (f"({_decimal(hung.at[k], '-')})", force[j])]
-        )
-        for j, k in places
-    ]
-    return {"force": force, "couple": couple, "moment": couple}
-
-
-def _decimal(entry: Entry, sign: str = "") -> str:
+def decimal(entry: Entry, sign: str = "") -> str:
     """Return a number as a decimal if it or its double is one, with the other sign if there is one.
 
     A name stays.

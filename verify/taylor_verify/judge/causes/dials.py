@@ -14,7 +14,8 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Changes
-from taylor_verify.judge.causes.changed_texts import terms, written_out
+from taylor_verify.judge.causes.changed_texts import terms
+from taylor_verify.judge.causes.hung_loads import written_out
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import Place, places
 from taylor_verify.models import own

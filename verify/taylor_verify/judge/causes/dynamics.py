@@ -60,6 +60,10 @@ _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
 # Of the numbers that a fit may begin at, so many are tried: the best one may fit these arcs alone.
 _BEGINS: Final = 2
+# Methods are replayed over so many rows at most.
+_LONGEST: Final = 8
+# A fit that leaves less is no fit of these arcs alone.
+_ALONE: Final = 1e-4
 # The pace of a motion by a coarse method is wrong by no more than this part.
 _COARSE_PACE: Final = 0.05
 # A motion has one pace if a method changes it otherwise by less than this part, or so many roundings.
@@ -88,7 +92,7 @@ class Dynamics:
 
     @cached_property
     def _arcs(self) -> tuple[Arcs, int]:
-        return telling_arcs(self.answer.thinned(FIT_ROWS))
+        return telling_arcs(self.answer)
 
     @cached_property
     def _search(self) -> Search:
@@ -170,13 +174,12 @@ class Search:
                 return cause
             is_blind = any(map(self._is_pace, candidates))
             if not has_methods and (is_blind or not is_exact):
-                stride = min(stride, 8) if self.answer.count <= FIT_ROWS else 1
-                candidates += replays(self.answer, stride)
+                candidates += replays(self.answer, min(stride, _LONGEST))
             has_methods = True
         if is_blind:
             candidates = [each for each in candidates if has_few_digits(each, self.floor)]
         elif not is_stepped and not any(map(self._is_exact, candidates)):
-            candidates += self._of_simulators(stride)
+            candidates += self._of_simulators(min(stride, _LONGEST))
         cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
         if is_stepped or is_blind:
             return cause
@@ -308,7 +311,7 @@ class Search:
                         ends.append(fit.numbers)
                         candidate = self._candidate(family, fit)
                         yield candidate
-                        if self._is_exact(candidate):
+                        if candidate.defects < _ALONE or self._is_exact(candidate):
                             break
 
     def _has_motion(self, family: Family, number: float) -> bool:

@@ -12,8 +12,9 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.changed_texts import has_text, written_out
+from taylor_verify.judge.causes.changed_texts import has_text
 from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.hung_loads import written_out
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.methods_with_memory import runs
 from taylor_verify.judge.causes.replayed_methods import Method

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import combinations, product
 from typing import Any, Final
 
 import numpy as np
@@ -178,8 +179,9 @@ def _of_text(text: str) -> Iterator[str]:
 
 
 def _of_call(name: str, inside: Sequence[str]) -> Iterator[str]:
-    first, *others = inside
     if name == "abs":
-        yield first
-    for other in others:
-        yield f"({first}) - ({other})"
+        yield inside[0]
+    # The ends of a clip do not meet.
+    pairs = product(inside[:1], inside[1:]) if name == "clip" else combinations(inside, 2)
+    for one, other in pairs:
+        yield f"({one}) - ({other})"

@@ -16,6 +16,7 @@ from taylor_verify.judge.causes.cause_search import causes_of
 from taylor_verify.judge.causes.changed_course import own_rows
 from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.float_answer import Answer, Places
+from taylor_verify.judge.causes.last_place import half_units
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.material import (
     are_known,
@@ -45,8 +46,9 @@ _READINGS: Final = frozenset({"convention", "clock", "stamps", "omega against at
 _OTHER_BODIES: Final = frozenset(
     {"products of inertia with the other sign", "coupling B of the energy transposed"}
 )
-# R^T R of printed digits is off by less.
+# R^T R is off by more, and by more than printed digits make of it: half a unit of six entries.
 _NO_ROTATION: Final = 1e-5
+_UNITS: Final = 8
 # Of longer files every second row is examined, or every third, and so on.
 _MOST_ROWS: Final = 1500
 # The search for causes is silent if float64 or a decomposition fails, or at the end of its budget.
@@ -129,13 +131,14 @@ def _no_rotation(file: TrajectoryFile) -> tuple[str, ...]:
     R = file.groups["attitude"].doubles().reshape(-1, 3, 3)
     with np.errstate(all="ignore"):
         off = np.max(np.abs(R.transpose(0, 2, 1) @ R - np.eye(3)), axis=(1, 2))
-    wrong = np.flatnonzero(off > _NO_ROTATION)
+    least = max(_NO_ROTATION, _UNITS * half_units(file)["attitude"])
+    wrong = np.flatnonzero(off > least)
     if not len(wrong):
         return ()
     worst = int(np.nanargmax(off))
     return (
         f"r11 ... r33 are no rotation: R^T R is off by {off[worst]:.2g} at t = "
-        f"{float(file.times[worst]):.6g}, and by more than {_NO_ROTATION:g} since t = "
+        f"{float(file.times[worst]):.6g}, and by more than {least:.2g} since t = "
         f"{float(file.times[wrong[0]]):.6g}",
     )
 

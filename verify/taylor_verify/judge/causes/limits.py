@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Final
@@ -22,6 +23,16 @@ def other_limits(loads: Loads) -> Iterator[tuple[str, Loads]]:
         by_length = _by_length(loads)
         if by_length != loads:
             yield "the length of the vector is limited, where the scene limits each axis", by_length
+
+
+def bounds(loads: Loads) -> list[tuple[str, str]]:
+    """Return the lower and the upper end of each clip in the texts."""
+    found = list[tuple[str, str]]()
+    for text in (str(place.entry) for place in places(loads)):
+        for at in (match.start() for match in re.finditer(re.escape(_CLIP), text)):
+            _, low, high = arguments(text, at)[0]
+            found.append((low, high))
+    return found
 
 
 def _without_limits(text: str) -> str:

@@ -248,7 +248,7 @@ def material_of_attitudes(
         verdicts=[*verdicts, *failed[:1]],
         every=every,
     )
-    return answer and replace(answer, has_rates=False)
+    return answer and replace(answer, has_rates=False, places=answer.places + every * ASIDE)
 
 
 def _of_frame_alone(

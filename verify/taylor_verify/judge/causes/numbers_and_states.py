@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.actuator_limits import own_limits
 from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
@@ -68,7 +69,8 @@ def in_numbers(answer: Answer, wrong: Places) -> Cause | None:
         # A switch may come a little before or after the row at which the motion is seen to be wrong.
         wider = [np.arange(max(run[0] - 1, 0), min(run[-1] + 2, answer.count - 1)) for run in runs]
         search = search_by(answer, _arcs_over(answer, wider))
-        cause = search.cause([*search.from_far(moves_switch)]) if moves_switch else None
+        far = [*moves_switch, *own_limits(answer.right)]
+        cause = search.cause([*search.from_far(far)]) if far else None
         return cause or search.cause([*search.fitted(others)])
     return None
 

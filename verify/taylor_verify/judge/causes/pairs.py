@@ -26,7 +26,7 @@ _ALONE: Final = 0.97
 _OF_BOTH: Final = 0.5
 # Kinds that are one class: no two of them make a pair.
 _OF_INERTIA: Final = dict.fromkeys(
-    ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
+    ("body", "part of the body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
 )
 
 

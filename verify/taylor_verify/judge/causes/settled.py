@@ -299,18 +299,19 @@ class Choice:
         first, shortened = alike[0], self._shortened(alike[0])
         best = shortened.candidate
         text, changes = self._described(best)
-        others = tuple(
+        others = dict.fromkeys(
             self._described(each.candidate)[0]
             for each in alike[1:]
-            if not _are_same_body(each.candidate.changes, first.candidate.changes)
+            if not _are_same(each.candidate.changes, first.candidate.changes)
         )
+        others.pop(text, None)
         is_whole = self._is_whole(first)
         return Cause(
             best.family.name,
             best.kind,
             shortened.leaves,
             text,
-            others,
+            tuple(others),
             changes,
             best.method,
             is_whole=is_whole,
@@ -382,10 +383,11 @@ def _short(numbers: Floats) -> Floats:
     return np.array([float(f"{x:.{_SHORT}g}") for x in numbers])
 
 
-def _are_same_body(changes: Changes, other: Changes) -> bool:
-    """Return True if two changes lead to one body."""
-    return changes.keys() == other.keys() == {"mass"} and bool(
-        np.allclose(changes["mass"], other["mass"], rtol=_SAME_BODY, atol=0.0)
+def _are_same(changes: Changes, other: Changes) -> bool:
+    """Return True if two changes of numbers lead to one body under one load."""
+    is_of_numbers = changes.keys() == other.keys() and bool(changes) and "acting" not in changes
+    return is_of_numbers and all(
+        np.allclose(changes[name], other[name], rtol=_SAME_BODY, atol=0.0) for name in changes
     )
 
 

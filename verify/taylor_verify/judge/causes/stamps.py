@@ -204,7 +204,7 @@ def _whole_steps(times: Floats, exact: Floats, size: float) -> str | None:
     apart = np.diff(exact)
     is_more = apart > (np.min(apart) + np.max(apart)) / 2
     less, more = apart[~is_more], apart[is_more]
-    if not len(less) or max(np.ptp(less), np.ptp(more)) > _PATTERN * size:
+    if not len(less) or not len(more) or max(np.ptp(less), np.ptp(more)) > _PATTERN * size:
         return None
     h = float(np.mean(more) - np.mean(less))
     counts = np.concatenate([[0], np.cumsum(np.rint(np.mean(less) / h) + is_more)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from operator import attrgetter
 from typing import Final
@@ -24,6 +25,8 @@ _NOISE: Final = 1e-6
 # Jumps are few: this many, or one in so many rows.
 _FEW: Final = 2
 _ONE_IN: Final = 50
+# So many jumps are listed.
+_LISTED: Final = 4
 _OFF: Final = 10.0
 _FEWEST: Final = 2
 _RIGHT: Final = 4
@@ -60,18 +63,22 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
     if leaves is None or max(leaves.values()) > may_leave(answer, answer.moving):
         return None
     last = answer.file.v[bad[-1] + 1 :]
-    times = ", ".join(f"{answer.times[row + 1] + answer.right.start:.6g}" for row in bad[:4])
+    *jumps, rest = (f"{answer.times[row + 1] + answer.right.start:.6g}" for row in bad)
     if _is_at_rest(answer, last):
-        return Cause(
-            f"at rest from t = {times} on: the motion is right before, and then all velocities are 0",
-            "at rest",
-            leaves,
-        )
+        before = f"exact between jumps at t = {_listed(jumps)}" if jumps else "right"
+        name = f"at rest from t = {rest} on: the motion is {before} before, and then all velocities are 0"
+        return Cause(name, "at rest", leaves)
     name = (
-        f"exact motion between jumps at t = {times}, or loads for a short time before them: each piece is "
-        "the scene's motion from its own first row"
+        f"exact motion between jumps at t = {_listed([*jumps, rest])}, or loads for a short time before "
+        "them: each piece is the scene's motion from its own first row"
     )
     return Cause(name, "jump", leaves)
+
+
+def _listed(times: Sequence[str]) -> str:
+    """Return some times, and the number of those that are not listed."""
+    more = len(times) - _LISTED
+    return ", ".join(times[:_LISTED]) + (f" and {more} more" if more > 0 else "")
 
 
 def has_own_start(answer: Answer) -> bool:

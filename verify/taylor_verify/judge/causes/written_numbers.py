@@ -17,12 +17,12 @@ import numpy as np
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.changed_texts import (
     NAME,
+    VELOCITIES,
     changed_texts,
     key_of,
-    moving_names,
+    readers,
     rewritten,
     terms,
-    with_hung,
 )
 from taylor_verify.judge.causes.dials import (
     LITERAL,
@@ -35,8 +35,10 @@ from taylor_verify.judge.causes.dials import (
     term,
 )
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, fault
+from taylor_verify.judge.causes.hung_loads import hung_otherwise, with_hung
 from taylor_verify.judge.causes.limits import other_limits
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.over_ground import over_ground
 from taylor_verify.judge.causes.texts import (
     HANGING,
     Place,
@@ -201,7 +203,8 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
             # A number that no run reaches is no text for a reader.
             changes = {"acting": acting.of(missed[1]), "late": 0.0}
             yield fault(f"switch at t = {time:.6g} missed", "switch", changes)
-    for name, other in (*changed_texts(loads), *other_limits(loads)):
+    hung, limited = hung_otherwise(loads), other_limits(loads)
+    for name, other in (*changed_texts(loads), *hung, *limited, *over_ground(right)):
         if next(other.faults(), None) is None:
             yield fault(name, KIND, {"acting": acting.of(other)})
     for k, (name, table) in enumerate(loads.tables):
@@ -328,7 +331,7 @@ def _weighted(parts: list[str], which: set[int], value: float) -> str:
 
 def _of_drag(loads: Loads) -> Iterator[Number]:
     """Yield the factor of all terms that read velocities, and of the linear or quadratic ones alone."""
-    names = moving_names(loads)
+    names = readers(loads, VELOCITIES)
     own = texts_of_vectors(loads)
     of_loads = dict[tuple[frozenset[int], ...], tuple[str, Callable[[str], set[int]]]]()
     for words, is_drag in _DRAGS.items():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -11,7 +12,14 @@ import numpy as np
 from taylor_verify_reports.studies.causes.bodies import Acting, Floats, Sample
 from taylor_verify_reports.studies.causes.kind import Kind, of
 from taylor_verify_reports.studies.causes.loaded import held
-from taylor_verify_reports.studies.causes.simulated import Law, Rows, integrated, law
+from taylor_verify_reports.studies.causes.simulated import (
+    Law,
+    Rows,
+    cross,
+    integrated,
+    law,
+    rotation,
+)
 from taylor_verify_reports.studies.causes.stepping import Draw, Make
 
 _LOWER: Final = ((4, 0), (4, 2), (5, 0), (5, 1))
@@ -81,6 +89,25 @@ def _acting(s: Sample, acting: Acting) -> Law:
     own = law(s)
     own.acting = acting
     return own
+
+
+def _over_ground(*terms: str) -> Make:
+    """Return the maker of a motion with the terms of the added mass, rate or C_A, over ground."""
+
+    def load(s: Sample, t: float, v: Floats, q: Floats, own: Floats) -> Floats:
+        current, none = rotation(q).T @ s.current, np.zeros(3)
+        rate = np.r_[cross(current, v[3:]), none]
+        more = -("rate" in terms) * (s.mass - s.dry) @ rate
+        if "C_A" in terms:
+            over_ground = v + np.r_[current, none]
+            more += _added_coriolis(s, v) @ v - _added_coriolis(s, over_ground) @ over_ground
+        return np.asarray(s.source.load(t, v, q, own) + more)
+
+    def make(s: Sample, d: Draw, size: float) -> Rows:
+        acting = Acting(partial(load, s), switches=(s.source.until,))
+        return integrated(s, _acting(s, acting))
+
+    return make
 
 
 def _held(s: Sample, d: Draw, size: float) -> Rows:
@@ -156,6 +183,9 @@ OF_LOADS: Final = (
         _V,
     ),
     Kind("drag over ground", ("ground",), _with(wind=lambda v, s, e: s.current), _V),
+    Kind("rate of the current left out", ("rate of the current",), _over_ground("rate"), _V),
+    Kind("C_A over ground", ("take the velocity over ground",), _over_ground("C_A"), _V),
+    Kind("added mass over ground", ("moves over ground",), _over_ground("rate", "C_A"), _V),
     # A pulse that is held is a pulse that begins and ends later.
     Kind(
         "loads held over a step",
