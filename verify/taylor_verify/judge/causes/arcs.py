@@ -18,6 +18,8 @@ from taylor_verify.scenes.instants import evenly
 
 # Arcs for a fit, and the defects, in roundings of the file, that their median shall reach.
 _ARCS: Final = 48
+# Arcs that are enough to tell methods apart.
+FEW: Final = 16
 _CLEAR: Final = 300.0
 # An arc is right up to so many.
 _RIGHT: Final = 3.0
@@ -334,12 +336,17 @@ def row_to_row(answer: Answer) -> Arcs:
     return Arcs(answer, rows, rows + 1)
 
 
+def some_arcs(answer: Answer, stride: int = 1, most: int = FEW) -> Arcs:
+    """Return arcs over so many rows, evenly spread over an answer."""
+    rows = np.array(evenly(answer.count - stride, most))
+    return Arcs(answer, rows, rows + stride)
+
+
 def telling_arcs(answer: Answer) -> tuple[Arcs, int]:
     """Return arcs whose defects stand out of the rounding: over as many rows as needed, and that number."""
     stride = 1
     while True:
-        starts = np.array(evenly(answer.count - stride, _ARCS))
-        arcs = Arcs(answer, starts, starts + stride)
+        arcs = some_arcs(answer, stride, _ARCS)
         ratio = np.max(np.abs(arcs.of_right) / (2 * arcs.rounding[:, None]), axis=0)
         ratio = np.where(np.isfinite(ratio), ratio, np.inf)
         middle = np.median(ratio)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 
@@ -25,6 +25,12 @@ class Budget:
             yield
         finally:
             self.left = max(self.left, 0.0) + rest
+
+    @contextmanager
+    def share(self, part: float) -> Iterator[None]:
+        """Do something with at most a part of what is left; at the end of that it is left as it stands."""
+        with suppress(Spent), self.at_most(part * self.left):
+            yield
 
     def spend(self, work: float) -> None:
         """Take some work from the budget. Raises Spent at its end."""

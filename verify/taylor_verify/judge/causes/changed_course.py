@@ -208,11 +208,12 @@ class Course:
 
 def _start(answer: Answer, equations: Equations, loads: Loads) -> Floats:
     """Return the first states, (sets, components, 1)."""
-    nu, masses = answer.start.v[0], equations.mass_sets
+    nu, n = answer.start.v[0], equations.size
+    masses = equations.mass.reshape(-1, n, n)
     frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
     starts = np.array(own.starts(loads), dtype=float)
     z = np.stack([np.concatenate([mass @ nu, *frame, starts]) for mass in masses])[:, :, None]
-    z[:, : equations.size] = _with_wheels(equations, z[:, : equations.size], z, 0.0)
+    z[:, :n] = _with_wheels(equations, z[:, :n], z, 0.0)
     return z
 
 

@@ -216,11 +216,6 @@ class Equations:
             out[:, -self.own :] = self._written("rates", time, z, nu)
         return out if np.ndim(self.clock) == 0 and self.clock == 1 else out * _number(self.clock)
 
-    @property
-    def mass_sets(self) -> Floats:
-        """The mass matrices of all parameter sets."""
-        return self.mass.reshape(-1, *self.mass.shape[-2:])
-
     def velocities(self, time: Floats, z: Floats) -> Floats:
         """Return nu of states, (parameters, components, arcs)."""
         momenta = z[:, : self.size]

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.arcs import Arcs, some_arcs
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import Family, Fitted, Sizes, gauss_newton
@@ -20,9 +20,7 @@ from taylor_verify.judge.causes.proof import LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.replayed_methods import METHODS, Method
 from taylor_verify.judge.causes.replays import Steps, in_steps, moved_by, nearest_count
 from taylor_verify.judge.causes.terms import faults_of_terms
-from taylor_verify.scenes.instants import evenly
 
-_ARCS: Final = 16
 _MOST: Final = 60
 # The numbers of steps by which the step is measured, and what the best fit there may leave of the defects.
 _TRIED: Final = (4, 8)
@@ -98,8 +96,7 @@ _ANY: Final = ("damping step", "1 - c h, or 1/(1 + c h) or exp(-c h) by another 
 
 def damped_steps(answer: Answer, stride: int) -> Iterator[Candidate]:
     """Yield damping by a factor once in each step, after the motion of the step or before it."""
-    rows = np.array(evenly(answer.count - stride, _ARCS))
-    arcs = Arcs(answer, rows, rows + stride)
+    arcs = some_arcs(answer, stride)
     motions = (*_MOTIONS, *(_MOTIONS_OF_ENGINES if answer.n == 3 else ()))
     for of_motion, place in product(motions, ("after", "before")):
         terms, words = of_motion.changes(answer.right), of_motion.words

@@ -15,10 +15,9 @@ from taylor_verify.judge.causes.actuator_limits import new_limits
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
-from taylor_verify.judge.causes.capped_speed import capped_speed
 from taylor_verify.judge.causes.changed_equations import Changes
-from taylor_verify.judge.causes.cleared_loads import cleared_loads
 from taylor_verify.judge.causes.damped_steps import damped_steps
+from taylor_verify.judge.causes.engine_steps import capped_speed, cleared_loads
 from taylor_verify.judge.causes.fit import (
     DIFFERENCE,
     Family,
@@ -185,14 +184,13 @@ class Search:
             return cause
         is_method = any(candidate.kind == "method" for candidate in candidates)
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
-            budget = self.answer.budget
-            with suppress(Spent), budget.at_most(budget.left / 2):
+            with self.answer.budget.share(1 / 2):
                 cause = self.cause(self._telling([*self._pairs(linear)]), PAIR)
         return cause or self._beside_steps(linear, stride)
 
     def _of_simulators(self, stride: int) -> Iterator[Candidate]:
         """Yield what simulators do in a step, or to their actuators, each for a part of the budget."""
-        answer, budget = self.answer, self.answer.budget
+        answer = self.answer
         for part, some in (
             (4, capped_speed(answer)),
             (4, cleared_loads(answer)),
@@ -200,7 +198,7 @@ class Search:
             (2, self.from_far(new_limits(answer))),
         ):
             made = list[Candidate]()
-            with suppress(Spent), budget.at_most(budget.left / part):
+            with answer.budget.share(1 / part):
                 made = [*some]
             yield from made
 

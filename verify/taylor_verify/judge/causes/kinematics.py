@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.arcs import Arcs, Evidence, moved, row_to_row
+from taylor_verify.judge.causes.arcs import Arcs, Evidence, moved, row_to_row, some_arcs
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
 from taylor_verify.judge.causes.changed_equations import (
     AFTER,
@@ -29,10 +29,8 @@ from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leav
 from taylor_verify.judge.causes.replayed_methods import OF_SECOND_ORDER, UPDATES
 from taylor_verify.judge.causes.replays import Steps, replay
 from taylor_verify.judge.conventions.angle_meanings import Angles
-from taylor_verify.scenes.instants import evenly
 from taylor_verify.words.causes import steps_in_words
 
-_ARCS: Final = 16
 _CLEAR: Final = 20.0
 # What a replayed update leaves of the defects.
 _REPLAYED: Final = 1e-2
@@ -78,8 +76,7 @@ def kinematics(answer: Answer, right: Equations, method: Steps | None = None) ->
     maps = maps_of_attitude(right, row_to_row(answer))
     if method is None and _left(answer, maps, [0]) is not None:
         return None
-    rows = np.array(evenly(answer.count - 1, _ARCS))
-    turns = _Turns(answer, Arcs(answer, rows, rows + 1), right)
+    turns = _Turns(answer, some_arcs(answer), right)
     in_pieces = None if method else _in_pieces(answer, right, maps)
     if in_pieces is not None or turns.floor * _CLEAR > 1:
         return in_pieces

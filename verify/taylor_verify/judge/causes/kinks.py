@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import combinations, product
@@ -17,7 +16,6 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs, moved
-from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Places
 from taylor_verify.judge.causes.limits import arguments
@@ -53,7 +51,7 @@ def moved_through(arcs: Arcs, equations: Equations, begin: Floats, steps: int) -
     ends, answer = arcs.moved(equations, begin, steps), arcs.answer
     if answer.stepping is not None or not has_kinks(equations):
         return ends
-    with suppress(Spent), answer.budget.at_most(_SHARE * answer.budget.left):
+    with answer.budget.share(_SHARE):
         over = _over_kinks(equations, arcs, begin[:1], ends[:1], steps)
         if len(over):
             some = replace(arcs, first=arcs.first[over], last=arcs.last[over])

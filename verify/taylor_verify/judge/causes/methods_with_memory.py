@@ -6,14 +6,12 @@ Over an arc the state is led back to where it was a step before: that tells the 
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial
 from itertools import pairwise, product
 from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.changed_equations import Equations, rotations, to_space
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
@@ -56,7 +54,7 @@ def runs(*steps: _Step) -> Callable[..., Motion | None]:
 
     def run(answer: Answer, equations: Equations, h: float, components: int) -> Motion | None:
         nearest, least = None, (True, np.inf)
-        with suppress(Spent), answer.budget.at_most(answer.budget.left / 2):
+        with answer.budget.share(1 / 2):
             for step in steps:
                 motion = _run(step, answer, equations, h, components)
                 left = answer.leaves(motion)

@@ -65,7 +65,7 @@ def in_numbers(answer: Answer, wrong: Places) -> Cause | None:
         else:
             begins = _that_move(answer.right.switches, family, moved, ends)
             moves_switch.append((family, begins))
-    with suppress(Spent), answer.budget.at_most(0.75 * answer.budget.left):
+    with answer.budget.share(3 / 4):
         # A switch may come a little before or after the row at which the motion is seen to be wrong.
         wider = [np.arange(max(run[0] - 1, 0), min(run[-1] + 2, answer.count - 1)) for run in runs]
         search = search_by(answer, _arcs_over(answer, wider))

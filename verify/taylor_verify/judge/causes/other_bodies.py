@@ -36,7 +36,11 @@ _ADDED: Final = (("left out", 0.0), ("with the other sign", -1.0), ("twice", 2.0
 def faults_of_bodies(right: Equations) -> Iterator[Family]:
     """Yield bodies that result from misreading the scene's, whole and in one of the two matrices alone."""
     misread = _misread_tensors(right) if right.size == 3 else _misread_masses(right)
+    bodies = [right.mass]
     for name, mass in misread:
+        if any(np.array_equal(mass, body) for body in bodies):
+            continue
+        bodies.append(mass)
         extra = right.basis.factors(products=coriolis_of(mass - right.mass))
         is_body = np.all(np.linalg.eigvalsh(mass) > 0)
         if is_body:
@@ -68,8 +72,7 @@ def _misread_tensors(right: Equations) -> Iterator[tuple[str, Any]]:
         listed = " ".join(str(i + 1) for i in order)
         yield f"moments of inertia in another order ({listed})", inertia[np.ix_(order, order)]
     moments, axes = np.linalg.eigh(inertia)
-    has_products = np.count_nonzero(inertia) > len(inertia)
-    for order in permutations(range(3)) if has_products else ():
+    for order in permutations(range(3)):
         yield "principal axes dropped", np.diag(moments[list(order)])
     for order in permutations(range(3)):
         for signs in ((1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1)):
@@ -302,7 +305,7 @@ def _rigid(mass: float, about_centre: Floats, arm: Floats) -> Floats:
 
 
 def _with_another_centre(mass: Floats, p: Floats) -> Changes:
-    return {"mass": mass + p @ p * np.eye(3) - np.outer(p, p)}
+    return {"mass": mass + _steiner(1.0, p)}
 
 
 class _Number(NamedTuple):

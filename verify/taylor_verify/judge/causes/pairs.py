@@ -38,13 +38,8 @@ class Linear:
     slopes: Floats
     left: float
 
-    @property
-    def family_class(self) -> str:
-        """The class of its kind."""
-        return class_of(self.family)
 
-
-def class_of(family: Family) -> str:
+def _class(family: Family) -> str:
     """Return the class of a kind of faults."""
     return _OF_INERTIA.get(family.kind, family.kind)
 
@@ -61,7 +56,7 @@ def likely_pairs(
         one, other = few[i], few[k]
         count = one.family.count + other.family.count
         is_alone = min(one.left, other.left) > _ALONE
-        if one.family_class == other.family_class or count > _NUMBERS or is_alone:
+        if _class(one.family) == _class(other.family) or count > _NUMBERS or is_alone:
             continue
         basis = orthonormal(bases[k] - bases[i] @ (bases[i].T @ bases[k]), 1e-9)
         left = float(np.linalg.norm(across(basis, rests[i]))) / evidence.size
@@ -98,5 +93,5 @@ def pairs_with_a_fault(
     for _, i, place in sorted(tried)[:_MOST]:
         family, (fault, _) = few[i].family, some[place]
         changed = fault.changes(fault.right).keys() & family.changes(family.right).keys()
-        if few[i].family_class != class_of(fault) and "acting" not in changed:
+        if _class(family) != _class(fault) and "acting" not in changed:
             yield both(right, fault, family)

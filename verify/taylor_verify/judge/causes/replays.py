@@ -6,7 +6,7 @@ gives the number of steps, with which the arcs are stepped again as the simulato
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
 from itertools import chain
@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes import held_loads
-from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.arcs import FEW, Arcs, some_arcs
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import across, fault, orthonormal
@@ -31,12 +31,10 @@ from taylor_verify.judge.causes.replayed_methods import (
     with_unit_attitude,
     with_updates,
 )
-from taylor_verify.scenes.instants import evenly
 from taylor_verify.words.causes import steps_in_words
 
-_ARCS: Final = 16
 # A replay leaves at most this part of the defects, or so many roundings; they are this many at least.
-_LEAVES: Final = 0.02
+LEAVES: Final = 0.02
 _ROUNDINGS: Final = 5.0
 # One that is only nearly right over an arc leaves more.
 _NEARLY: Final = 0.2
@@ -81,6 +79,23 @@ class Steps:
         """Return how long the steps are."""
         return steps_in_words(np.diff(answer.times).tolist(), self.count)
 
+    def candidate(self, title: str, near: float, changes: Changes) -> Candidate:
+        """Return the steps as a candidate, of a changed scene if there are ``changes``."""
+        of_steps, motion = fault(title, "method", changes), partial(motion_of_steps, self)
+        return Candidate(of_steps, of_steps.right, self.left, motion, near, self)
+
+
+def best_steps(arcs: Arcs, tried: Iterable[tuple[str, Method, int]]) -> Steps:
+    """Return the steps, of some methods by name with numbers of steps, that leave the least."""
+    every = (Steps(name, method, n, _left_by(arcs, method, n)) for name, method, n in tried)
+    return min(every, key=lambda steps: steps.left)
+
+
+def _left_by(arcs: Arcs, method: Method, count: int) -> float:
+    """Return the part of the defects that so many steps from row to row leave."""
+    left = float(np.linalg.norm(in_steps(arcs, method, count).defects([{}]))) / arcs.size
+    return left if np.isfinite(left) else np.inf
+
 
 def replay(
     answer: Answer,
@@ -123,7 +138,7 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     of_loads = [*replayed.steps(held_loads.methods(acting) if acting else {}, _ALONE)]
     is_exact = any(steps.left < _ROUNDINGS * replayed.floor for steps in of_loads)
     tried = [iter(of_loads), *[replayed.steps(known, _ALONE)] * (not is_exact)]
-    if answer.count > 2 * _ARCS and not is_exact:
+    if answer.count > 2 * FEW and not is_exact:
         # A method with memory has a first step of another kind.
         later = answer.at(np.s_[1:])
         beyond = _clear(later, stride)
@@ -131,20 +146,17 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
         more = {**late, **with_memory(answer.right)}
         tried += [] if beyond is None else [beyond.steps(more, _ALONE)]
     for steps in _each_best(chain(*tried)):
-        near = _LEAVES if steps.method.run is None else _NEARLY
+        near = LEAVES if steps.method.run is None else _NEARLY
         if steps.left < max(near, _ROUNDINGS * replayed.floor):
             h = steps.step(answer)
             changes = steps.method.held.changes(answer, h) if steps.method.held else {}
-            of_steps = fault(_name(steps, answer), "method", changes)
-            motion = partial(motion_of_steps, steps)
-            yield Candidate(of_steps, of_steps.right, steps.left, motion, near, steps)
+            yield steps.candidate(_name(steps, answer), near, changes)
 
 
 def _clear(answer: Answer, stride: int) -> _Replays | None:
     """Return the replays of arcs so long that their defects stand out of the rounding, if any do."""
     while answer.count >= _FEWEST * stride:
-        rows = np.array(evenly(answer.count - stride, _ARCS))
-        replayed = _Replays(Arcs(answer, rows, rows + stride), stride, [{}])
+        replayed = _Replays(some_arcs(answer, stride), stride, [{}])
         if replayed.floor * _CLEAR < 1:
             return replayed
         stride *= 2

@@ -127,8 +127,7 @@ class Choice:
 
     def _in_noise(self, candidate: Candidate, most: float) -> _Proven | None:
         """Return the proof of a candidate that leaves noise; it may cost little, as there are others."""
-        budget = self.answer.budget
-        with suppress(Spent), budget.at_most(_SHARE_OF_NOISE * budget.left):
+        with self.answer.budget.share(_SHARE_OF_NOISE):
             proof = self._proof(candidate, most)
             return proof if proof is not None and self._leaves_noise(proof) else None
         return None
