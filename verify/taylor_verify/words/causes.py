@@ -87,6 +87,8 @@ def with_numbers(
         known = [float(error) for error in errors] or [0.0] * len(values)
         changes = _changes(labels, [float(number) for number in right], values, known)
         return changes if [*labels] == [name] else f"{name}: {changes}"
+    if not any(values) and any(right):
+        return f"{name} left out"
     largest = max(map(abs, values)) or 1.0
     cut = (0.0 if abs(value) < _NOTHING * largest else value for value in values)
     return f"{name} = {' '.join(f'{value:.6g}' for value in cut)}"

@@ -336,7 +336,10 @@ class Choice:
         """Return a candidate with the fewest digits of its numbers that explain as much."""
         candidate = proven.candidate
         family, numbers = candidate.family, candidate.numbers
-        allowed = max(2 * proven.worst, self._least / ROUNDINGS, NOTHING)
+        # A number that is none is one number less.
+        is_none = np.all(np.abs(numbers) <= _NO_NUMBER[1] * family.scale)
+        as_much = proven.worst / BETTER if is_none else 2 * proven.worst
+        allowed = max(as_much, self._least / ROUNDINGS, NOTHING)
         if not 0 < family.count <= FEW:
             return proven
         sets = [np.where(np.abs(numbers) > e * family.scale, numbers, 0.0) for e in _NO_NUMBER]
