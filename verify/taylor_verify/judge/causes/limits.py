@@ -27,12 +27,12 @@ def other_limits(loads: Loads) -> Iterator[tuple[str, Loads]]:
 
 def bounds(loads: Loads) -> list[tuple[str, str]]:
     """Return the lower and the upper end of each clip in the texts."""
-    found = list[tuple[str, str]]()
+    ends = list[tuple[str, str]]()
     for text in (str(place.entry) for place in places(loads)):
         for at in (match.start() for match in re.finditer(re.escape(_CLIP), text)):
             _, low, high = arguments(text, at)[0]
-            found.append((low, high))
-    return found
+            ends.append((low, high))
+    return ends
 
 
 def _without_limits(text: str) -> str:

@@ -25,6 +25,9 @@ _FEWEST: Final = 6
 # A jump stands out if it is so many times what any other row is off by.
 _JUMP: Final = 100.0
 _SHORTEST: Final = 12
+# What leads from one row to the next leaves so many roundings, or this part of what the scene leaves.
+_FEW_ROUNDINGS: Final = 10.0
+_PART: Final = 1e-3
 
 
 def causes_in_pieces(answer: Answer, defects: Floats, ask: Ask) -> list[Cause] | None:
@@ -71,12 +74,13 @@ def _within(
     part = starts.piece(answer, first, last)
     if last - first < _FEWEST:
         cause = _without_numbers(part) if last > first else None
-        where = _times(answer, begin, end, is_right_before)
-        return [] if cause is None else [of_part(answer, part, cause, where)]
+        if cause is None:
+            return []
+        return [of_part(answer, part, cause, _times(answer, begin, end, is_right_before, cause))]
     if causes := ask(part):
         if all_along := _all_along(answer, causes[0]):
             return [all_along, *causes[1:]]
-        where = _times(answer, begin, end, is_right_before)
+        where = _times(answer, begin, end, is_right_before, causes[0])
         return [of_part(answer, part, cause, where) for cause in causes]
     half = part.at(np.s_[: part.count // 2])
     cause = Dynamics(half).cause() if half.count >= _SHORTEST and half.moving else None
@@ -87,7 +91,7 @@ def _within(
     if not len(wrong):
         return []
     change = first + int(wrong[0])
-    where = _times(answer, begin, change, is_right_before)
+    where = _times(answer, begin, change, is_right_before, cause)
     causes = [of_part(answer, half, cause, where)]
     with suppress(Spent):
         causes += _within(answer, change, end, ask, is_right_before=False)
@@ -119,9 +123,24 @@ def of_part(answer: Answer, part: Answer, cause: Cause, where: str) -> Cause:
     return replace(cause, leaves=leaves, where=where, changes={})
 
 
-def _times(answer: Answer, begin: int, end: int, is_right_before: bool) -> str:
-    """Return in words the part of the run between two rows."""
+def _times(answer: Answer, begin: int, end: int, is_right_before: bool, cause: Cause) -> str:
+    """Return in words the part of the run between two rows in which a cause acts."""
     first, last = (f"t = {answer.times[row] + answer.right.start:.6g}" for row in (begin, end))
     if end == answer.count - 1:
         return f"right up to {first}, then" if is_right_before else f"from {first} on"
-    return f"from {first} to {last.removeprefix('t = ')}" if begin else f"up to {last}"
+    last = last.removeprefix("t = ") if begin else last
+    if not _follows(answer, cause, end - 1):
+        last += ", or less than a row before"
+    if begin and not _follows(answer, cause, begin):
+        first += ", or less than a row later,"
+    return f"from {first} to {last}" if begin else f"up to {last}"
+
+
+def _follows(answer: Answer, cause: Cause, row: int) -> bool:
+    """Return True if a cause leads from a row to the next one, all the way."""
+    part = starts.piece(answer, row, row + 1)
+    scene, changed = (
+        starts.roundings(replace(part, right=part.right.changed(changes)))[0]
+        for changes in ({}, cause.changes)
+    )
+    return bool(cause.method is not None or changed <= max(_FEW_ROUNDINGS, _PART * scene))

@@ -16,7 +16,7 @@ from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.changed_texts import names_inertia
 from taylor_verify.judge.causes.fit import least_rest
 from taylor_verify.judge.causes.fitted_bodies import entries, nearest_factor, structure
-from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import is_up_to_a_factor
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS
@@ -42,6 +42,8 @@ NOTHING: Final = 1e-9
 FAIR: Final = 1e-6
 _FAIR_PAIR: Final = 1e-8
 _SHORT: Final = 2
+# Numbers that leave more are short by chance.
+_OF_SHORT: Final = 1e-4
 _DRAGS: Final = {"linear drag", "quadratic drag", "drag by the speed", "damping"}
 # Defects that noise may make, and how many candidates are tried that leave no more.
 _NOISY: Final = 0.1
@@ -136,8 +138,14 @@ class Choice:
         """Return True if what is left has no memory from row to row, as the error of a method has."""
         motion = proven.candidate.motion(self.answer, proven.candidate.changes)
         assert motion is not None
-        left = (self.answer.file.v - motion.v) / self.answer.sizes
-        return float(np.sum(left[1:] * left[:-1])) < _MEMORY * float(np.sum(left * left))
+        rests = (self._rest(motion, name) for name in self.groups)
+        return all(np.sum(r[1:] * r[:-1]) < _MEMORY * np.sum(r * r) for r in rests)
+
+    def _rest(self, motion: Motion, name: str) -> Floats:
+        """Return what a motion leaves of a group, row by row."""
+        rows, exact = (self.answer.rows(each, name) for each in (self.answer.file, motion))
+        signs = np.sign(np.sum(rows * exact, axis=1, keepdims=True)) if name == "attitude" else 1.0
+        return np.asarray(signs * rows - exact)
 
     def _is_decided(self, simple: Candidate, other: Candidate, proven: Sequence[_Proven]) -> bool:
         """Return True if a proven candidate with fewer numbers makes another one needless."""
@@ -197,7 +205,7 @@ class Choice:
             self._leaves_rounding(proven, self.groups) or self._leaves_noise(proven)
         ):
             return True
-        if not tries_short:
+        if not tries_short or proven.worst > _OF_SHORT:
             return False
         differences = family.right + _short(candidate.numbers - family.right)
         for numbers in (_short(candidate.numbers), differences):

@@ -101,9 +101,15 @@ def _from_a_row(answer: Answer, first: int) -> Cause | None:
     motion = whole(part, part.right)
     if motion is None:
         return None
-    leaves = answer.parts(part.errors(motion))
+    errors = part.errors(motion)
+    leaves = answer.parts(errors)
     if max(leaves[name] for name in answer.moving) > may_leave(answer, answer.moving):
         return None
+    if "attitude" in errors and "attitude" not in answer.failed:
+        # A right attitude refutes another start of omega.
+        right = max(answer.worst["attitude"], answer.roundings["attitude"])
+        if np.max(errors["attitude"]) > _OFF * right:
+            return None
     if leaves.get("attitude", 0.0) > CAPS[0]:
         del leaves["attitude"]
     if first:
