@@ -53,7 +53,11 @@ def causes_in_pieces(answer: Answer, defects: Floats, ask: Ask) -> list[Cause] |
 
 def _after_a_jump(answer: Answer, defects: Floats, ask: Ask) -> list[Cause]:
     """Return a jump between the first two rows, and the causes of the motion from the second row on."""
-    if len(defects) < _SHORTEST or defects[0] < _JUMP * np.max(defects[1:]):
+    if len(defects) < _SHORTEST:
+        return []
+    # Defects that die away from row to row are no jump.
+    first, second = (defects[row] >= _JUMP * np.max(defects[row + 1 :]) for row in (0, 1))
+    if second or not first:
         return []
     part = starts.piece(answer, 1, answer.count - 1)
     begin, end = (answer.times[row] + answer.right.start for row in (0, 1))
