@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import Any, Final
 
@@ -76,12 +76,17 @@ def kinematics(answer: Answer, right: Equations, method: Steps | None = None) ->
     maps = maps_of_attitude(right, row_to_row(answer))
     if method is None and _left(answer, maps, [0]) is not None:
         return None
-    turns = _Turns(answer, some_arcs(answer), right)
-    in_pieces = None if method else _in_pieces(answer, right, maps)
-    if in_pieces is not None or turns.floor * _CLEAR > 1:
+    if method is None and (in_pieces := _in_pieces(answer, right, maps)) is not None:
         return in_pieces
+    if not answer.moving:
+        # What the file rounds off of a right omega adds up over the rows.
+        answer = replace(answer, file=replace(answer.file, v=answer.truth.v))
+    turns, stride = _turns(answer, right)
+    if turns.floor * _CLEAR > 1:
+        return None
     search = Search(answer, turns, turns.motion, ["attitude"])
-    candidates = [*_updates(turns, method)]
+    # Steps lead from row to row.
+    candidates = [*_updates(turns, method)] if stride == 1 else []
     if method is None:
         faults = [fault(name, "kinematics", {"turns": np.array(pair)}) for name, pair in _WRONG]
         fitted = search.fitted(_families(answer, right))
@@ -96,6 +101,16 @@ def kinematics(answer: Answer, right: Equations, method: Steps | None = None) ->
         if right.coupled == answer.n:
             candidates.append(_by_angles(answer, right))
     return search.cause(candidates)
+
+
+def _turns(answer: Answer, right: Equations) -> tuple[_Turns, int]:
+    """Return turns over as many rows as stand out of the rounding, up to a quarter, and that number."""
+    stride = 1
+    turns = _Turns(answer, some_arcs(answer), right)
+    while turns.floor * _CLEAR > 1 and 8 * stride <= answer.count:
+        stride *= 2
+        turns = _Turns(answer, some_arcs(answer, stride), right)
+    return turns, stride
 
 
 @dataclass(frozen=True)

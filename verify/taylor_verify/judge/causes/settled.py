@@ -285,9 +285,10 @@ class Choice:
             turned = (few.file.q * signs - motion.q).ravel() / max(few.noise[1], _FLOAT64)
             return np.concatenate([off, turned * rounding])
 
+        enough = 0.0 if has_attitude else 2 * rounding
         for shift in _SHIFTS:
             with suppress(ValueError):
-                numbers = least_rest(rest, candidate.numbers, family.scale, shift, 2 * rounding)
+                numbers = least_rest(rest, candidate.numbers, family.scale, shift, enough)
                 return self._left(replace(candidate, numbers=numbers))
         return None
 
