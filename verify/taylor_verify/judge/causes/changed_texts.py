@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import combinations, product
 from typing import Final
 
@@ -56,7 +57,6 @@ _ALWAYS: Final[dict[str, _Names]] = {
         f"q{k}": f"q{(k + 1) % 4}" for k in range(4)
     },
     "the loads have no products of inertia": {f"I{i}{k}": "0" for i, k in _PAIRS if i != k},
-    "the loads have no abs: u1*u1 for abs(u1)*u1": {"abs": ""},
     "the loads read the velocity in space axes": _in_space("u"),
     "the loads read omega in space axes": _in_space("w"),
     "the loads take omega in degrees": {f"w{i}": f"(180/pi*w{i})" for i in _AXES},
@@ -88,22 +88,27 @@ _CHANGES: Final[dict[str, _Change]] = {
 def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
     """Yield loads with other texts, with what is other in words."""
     for words, names in (*_ALWAYS.items(), *_of_scene(loads)):
-
-        def changed(text: str, names: _Names = names) -> str:
-            return NAME.sub(lambda match: names.get(match.group(), match.group()), text)
-
-        other = rewritten(loads, changed)
+        other = rewritten(loads, partial(renamed, names=names))
         if other != loads:
             yield words, other
+    yield from alone_and_together(
+        loads, "the loads have no abs", partial(renamed, names={"abs": ""})
+    )
     yield from _other_speeds(loads)
     yield from _exchanged(loads)
     yield from _named_otherwise(loads)
-    for name, entries in loads.vectors:
-        if has_text(entries):
-            turned = _with_part(loads, [name], lambda term: True, _CHANGES[_WRONG_WAY])
-            yield f"{name} {_WRONG_WAY}", turned
+    some = [name for name, entries in loads.vectors if has_text(entries)]
+    for name in some:
+        turned = _with_part(loads, [name], lambda term: True, _CHANGES[_WRONG_WAY])
+        yield f"{name} {_WRONG_WAY}", turned
+    yield from _drag_in_space(loads, some)
     for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):
         yield f"{noun} {words}", _with_part(loads, vectors, is_part, change)
+
+
+def renamed(text: str, names: Mapping[str, str]) -> str:
+    """Return a text with other texts in the place of some names."""
+    return NAME.sub(lambda match: names.get(match.group(), match.group()), text)
 
 
 def has_text(entries: Iterable[Entry]) -> bool:
@@ -127,6 +132,19 @@ def _other_speeds(loads: Loads) -> Iterator[tuple[str, Loads]]:
             "the loads have abs(u1) or abs(w1), where the scene has the whole speed",
             by_components,
         )
+
+
+def alone_and_together(
+    loads: Loads, words: str, change: Callable[[str], str]
+) -> Iterator[tuple[str, Loads]]:
+    """Yield the loads with a change of all texts, and of one component of a vector alone."""
+    every = rewritten(loads, change)
+    if every != loads:
+        yield words, every
+    for place in texts_of_vectors(loads):
+        alone = place.put(change(str(place.entry)))
+        if alone not in (loads, every):
+            yield f"{words}, in {place.name} alone", alone
 
 
 def _speed(component: re.Match[str]) -> str:
@@ -207,15 +225,12 @@ def key_of(place: Place) -> str:
 
 
 def _of_scene(loads: Loads) -> Iterator[tuple[str, _Names]]:
-    """Yield the exchanges by the vectors that are given in space axes, and by the current."""
+    """Yield the exchanges by the vectors that are given in space axes."""
     for name, entries in loads.space:
         turned = {f"{name}{i}": turned_entry(entries, "r{0}{1}", i) for i in _AXES}
         yield f"{name} of [space] is turned the wrong way, by R for R^T", turned
         plain = {f"{name}{i}": f"({entry})" for i, entry in zip(_AXES, entries, strict=True)}
         yield f"{name} of [space] is not turned into body axes", plain
-    if any(loads.current):
-        ground = {f"u{i}": f"(u{i} + {turned_entry(loads.current, 'r{1}{0}', i)})" for i in _AXES}
-        yield "the loads take the velocity over ground, not that through the water", ground
 
 
 def turned_entry(entries: tuple[Entry, ...], entry: str, i: int) -> str:
@@ -224,6 +239,25 @@ def turned_entry(entries: tuple[Entry, ...], entry: str, i: int) -> str:
 
 
 # Parts of the loads.
+
+
+def _drag_in_space(loads: Loads, some: list[str]) -> Iterator[tuple[str, Loads]]:
+    """Yield the drag of each vector, and of all, by velocities in space axes and along these."""
+    moving, situated = (readers(loads, names) for names in (VELOCITIES, _situated(loads)))
+
+    def is_drag(term: str) -> bool:
+        return _reads(moving, term) and not _reads(situated, term)
+
+    for names in [*([name] for name in some), *[some] * (len(some) > 1)]:
+        other = _with_part(loads, names, is_drag, _along_space)
+        if other != loads:
+            yield f"drag of {' and '.join(names)} by coefficients along space axes", other
+
+
+def _along_space(parts: Sequence[str], i: int) -> str:
+    """Return an axis of the terms by velocities in space axes, whose sums are turned into body axes."""
+    in_space = [renamed(part, {**_in_space("u"), **_in_space("w")}) for part in parts]
+    return _CHANGES["in space axes"](in_space, i)
 
 
 def _parts(loads: Loads) -> Iterator[tuple[str, tuple[str, ...], Callable[[str], bool]]]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import Final
 
 from taylor_verify.judge.causes.changed_texts import added, decimal, sum_of
 from taylor_verify.judge.causes.texts import HANGING
@@ -30,10 +31,11 @@ def hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
                 # Of a rigid body weight is a moment, and no more.
                 words = f"couple of {noun} with the other sign"
                 yield words, with_hung(loads, some, _turned_round)
-        fixed = without
-        for k in some:
-            fixed = added(fixed, _texts_of(loads.hung[k], is_in_body=True))
-        yield f"{noun} fixed in body axes", fixed
+        for words, texts_of in _OTHERWISE.items():
+            other = without
+            for k in some:
+                other = added(other, texts_of(loads.hung[k]))
+            yield f"{noun} {words}", other
 
 
 def with_hung(loads: Loads, some: Sequence[int], change: Callable[[Hung], Hung]) -> Loads:
@@ -54,24 +56,44 @@ def written_out(loads: Loads) -> Loads:
     return replace(loads, hung=())
 
 
-def _texts_of(hung: Hung, is_in_body: bool = False) -> dict[str, list[str]]:
-    """Return the force and the couple of a hung force; with ``is_in_body`` it is fixed in body axes.
+_Texts = dict[str, list[str]]
 
-    The couple is the moment of a rigid body, whose origin is held.
-    """
-    force = [
-        decimal(hung.force[i])
-        if is_in_body
-        else sum_of(
-            (f"r{k}{i + 1}", decimal(f)) for k, f in zip((1, 2, 3), hung.force, strict=True)
-        )
-        for i in range(3)
-    ]
-    places = ((1, 2), (2, 0), (0, 1))
+
+def _texts_of(hung: Hung) -> _Texts:
+    """Return the force and the couple of a hung force, in body axes."""
+    return _at(hung, _turned(map(decimal, hung.force), "r{1}{0}"))
+
+
+def _at(hung: Hung, force: Sequence[str]) -> _Texts:
+    """Return a force at the point of a hung one with its couple: the moment of a rigid body."""
     couple = [
         sum_of(
             [(f"({decimal(hung.at[j])})", force[k]), (f"({decimal(hung.at[k], '-')})", force[j])]
         )
-        for j, k in places
+        for j, k in ((1, 2), (2, 0), (0, 1))
     ]
-    return {"force": force, "couple": couple, "moment": couple}
+    return {"force": [*force], "couple": couple, "moment": couple}
+
+
+def _turned(vector: Iterable[str], entry: str) -> list[str]:
+    """Return a vector turned by the matrix of these entries, as r{1}{0} are of R^T."""
+    parts = [*vector]
+    return [
+        sum_of((entry.format(i, k), part) for k, part in zip((1, 2, 3), parts, strict=True))
+        for i in (1, 2, 3)
+    ]
+
+
+def _with_arm_in_space(hung: Hung) -> _Texts:
+    """Return a hung force whose point is fixed in space axes, from the origin."""
+    couple = _turned(_at(hung, [*map(decimal, hung.force)])["couple"], "r{1}{0}")
+    return _texts_of(hung) | {"couple": couple, "moment": couple}
+
+
+_OTHERWISE: Final[dict[str, Callable[[Hung], _Texts]]] = {
+    "fixed in body axes": lambda hung: _at(hung, [*map(decimal, hung.force)]),
+    "turned the wrong way, by R": lambda hung: _at(
+        hung, _turned(map(decimal, hung.force), "r{0}{1}")
+    ),
+    "at an arm that is not turned with the body": _with_arm_in_space,
+}

@@ -9,10 +9,19 @@ are p x W and q x W + p x U, where (p, q) = A (U, W).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Final
 
 from taylor_verify.judge.causes.changed_equations import Equations
-from taylor_verify.judge.causes.changed_texts import added, sum_of, turned_entry
+from taylor_verify.judge.causes.changed_texts import (
+    added,
+    alone_and_together,
+    decimal,
+    renamed,
+    rewritten,
+    sum_of,
+    turned_entry,
+)
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.scenes.loads.loads import Loads
 
@@ -28,6 +37,21 @@ def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
         return
     one, two, three = (turned_entry(loads.current, "r{1}{0}", i) for i in (1, 2, 3))
     current = (one, two, three)
+    ground = {f"u{i}": f"(u{i} + {own})" for i, own in enumerate(current, 1)}
+    words = "the loads take the velocity over ground, not that through the water"
+    yield from alone_and_together(loads, words, partial(renamed, names=ground))
+    for words, entry in (
+        ("not turned into body axes", None),
+        ("turned the wrong way, by R", "r{0}{1}"),
+    ):
+        names = {
+            name: f"({text} - {_other_current(loads, entry, i)})"
+            for i, (name, text) in enumerate(ground.items(), 1)
+        }
+        yield (
+            f"the current in the loads is {words}",
+            rewritten(loads, partial(renamed, names=names)),
+        )
     rate = "the rate of the current in body axes is left out"
     yield (
         f"{rate}: nu' over ground for that through the water",
@@ -44,6 +68,12 @@ def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
     both = (_plus(a, b) for a, b in zip(slow, turning, strict=True))
     name = "the added mass moves over ground, not through the water: M_A nu' and C_A(nu) nu"
     yield name, _with(loads, *both)
+
+
+def _other_current(loads: Loads, entry: str | None, i: int) -> str:
+    """Return a component of the current by the matrix of these entries, or as it stands in space axes."""
+    own = f"({decimal(loads.current[i - 1])})"
+    return own if entry is None else turned_entry(loads.current, entry, i)
 
 
 def _accelerated(mass: Floats, current: _Vector) -> tuple[_Vector, _Vector]:

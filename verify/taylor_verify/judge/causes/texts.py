@@ -105,11 +105,10 @@ def _of_states(loads: Loads) -> Iterator[tuple[_Path, str, str]]:
 
 
 def _of_hung(loads: Loads) -> Iterator[tuple[_Path, str, str]]:
-    for k, hung in enumerate(loads.hung):
-        listed = f"({', '.join(f'{float(f):g}' for f in hung.force)})"
+    for k in range(len(loads.hung)):
         for i in range(3):
             key = f"{HANGING[k]}.force[{i}]"
             yield ("hung", k, "force", i), key, f"force {i + 1} fixed in space"
         for i in range(3):
-            name = f"component {i + 1} of its point, of the force {listed}"
+            name = f"component {i + 1} of the point of {HANGING[k]}"
             yield ("hung", k, "at", i), f"{HANGING[k]}.at[{i}]", name

@@ -330,19 +330,23 @@ def _weighted(parts: list[str], which: set[int], value: float) -> str:
 
 
 def _of_drag(loads: Loads) -> Iterator[Number]:
-    """Yield the factor of all terms that read velocities, and of the linear or quadratic ones alone."""
-    names = readers(loads, VELOCITIES)
-    own = texts_of_vectors(loads)
-    of_loads = dict[tuple[frozenset[int], ...], tuple[str, Callable[[str], set[int]]]]()
-    for words, is_drag in _DRAGS.items():
+    """Yield the factor of all terms that read velocities, of linear or quadratic ones, of one vector."""
+    names, own = readers(loads, VELOCITIES), texts_of_vectors(loads)
+    vectors = [name for name, _ in loads.vectors]
+    every = dict[tuple[frozenset[int], ...], tuple[str, Callable[[str], set[int]], str]]()
+    for key, (words, is_drag) in product(
+        ["", *vectors] if len(vectors) > 1 else [""], _DRAGS.items()
+    ):
         drag: Callable[[str], set[int]] = partial(_drag_of, names, is_drag)
-        # Where all of the drag is linear, or quadratic, the later words say it.
-        of_loads[tuple(frozenset(drag(str(place.entry))) for place in own)] = words, drag
-    for parts, (words, drag) in of_loads.items():
+        of_key = (drag(str(p.entry)) if key in ("", key_of(p)) else () for p in own)
+        # Where all of the drag is linear, or quadratic, or in one vector, the later words say it.
+        every[tuple(map(frozenset, of_key))] = f"{words}{f' in the {key}' * bool(key)}", drag, key
+    for parts, (words, drag, key) in every.items():
         if sum(map(bool, parts)) > 1:
-            keys = (term(place, k) for place in own for k in drag(str(place.entry)))
-            put = partial(_put_drag, loads, drag)
-            yield Number(f"factor of all {words}", 1.0, put, keys=tuple(keys))
+            keys = tuple(term(p, k) for p, some in zip(own, parts, strict=True) for k in some)
+            yield Number(
+                f"factor of all {words}", 1.0, partial(_put_drag, loads, drag, key), keys=keys
+            )
 
 
 def _is_linear(part: str) -> bool:
@@ -364,12 +368,12 @@ def _drag_of(names: frozenset[str], is_drag: Callable[[str], bool], text: str) -
     return {k for k, part in parts if is_drag(part) and not names.isdisjoint(NAME.findall(part))}
 
 
-def _put_drag(loads: Loads, drag: Callable[[str], set[int]], value: float) -> Loads:
+def _put_drag(loads: Loads, drag: Callable[[str], set[int]], key: str, value: float) -> Loads:
     def changed(text: str) -> str:
         return _weighted(terms(text), drag(text), value) if drag(text) else text
 
     for name, _ in loads.vectors:
-        loads = rewritten(loads, changed, name)
+        loads = rewritten(loads, changed, name) if key in ("", name) else loads
     return loads
 
 

@@ -178,7 +178,7 @@ OF_LOADS: Final = (
     ),
     Kind(
         "couple of weight and buoyancy left out",
-        ("weight at", "weight and buoyancy", "couple r x R^T e3", "component 3 of its point"),
+        ("weight at", "weight and buoyancy", "couple r x R^T e3", "component 3 of the point"),
         _with(arm=np.zeros(3)),
         _V,
     ),
