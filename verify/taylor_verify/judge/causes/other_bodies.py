@@ -29,6 +29,7 @@ _TOGETHER: Final[dict[str, _Places]] = {
     "its lower left block, the Munk moment": tuple(product((4, 5, 6), (1, 2, 3))),
     "its upper right block": tuple(product((1, 2, 3), (4, 5, 6))),
     "its lower right block": tuple(product((4, 5, 6), (4, 5, 6))),
+    "all but its Munk moment": tuple(product(range(1, 7), (4, 5, 6))),
 }
 _ADDED: Final = (("left out", 0.0), ("with the other sign", -1.0), ("twice", 2.0))
 

@@ -91,9 +91,9 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
         nodes = np.arange(0, answer.count, every)
         if len(nodes) < _FEWEST or np.any(bad[nodes]):
             continue
-        for name, between in _KINDS.items():
+        for name, (between, of_q) in _KINDS.items():
             v = between(answer, nodes, file.v, rates)
-            q = None if file.q is None else between(answer, nodes, file.q, turns)
+            q = None if file.q is None else of_q(answer, nodes, file.q, turns)
             unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
             motion = Motion(v, unit)
             leaves = _leaves(answer, answer.errors(motion), np.s_[: nodes[-1]])
@@ -148,8 +148,24 @@ def _cubic(answer: Answer, nodes: Places, rows: Floats, rates: Floats) -> Floats
     return cubic(answer.times[nodes], rows[nodes], rates[nodes], answer.times)
 
 
-_KINDS: Final[dict[str, Callable[[Answer, Places, Floats, Floats], Floats]]] = {
-    "linear interpolation": _linear,
-    "cubic interpolation (Hermite)": _cubic,
-    "values that are held": _held,
+def _along_arcs(answer: Answer, nodes: Places, rows: Floats, rates: Floats) -> Floats:
+    """Return unit quaternions on the great circles between exact ones, at equal paces (slerp)."""
+    k = np.clip(
+        np.searchsorted(nodes, np.arange(answer.count), side="right") - 1, 0, len(nodes) - 2
+    )
+    one, other = rows[nodes[k]], rows[nodes[k + 1]]
+    cosine = np.sum(one * other, axis=1, keepdims=True)
+    angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0)) / np.pi
+    begins, ends = answer.times[nodes[k]], answer.times[nodes[k + 1]]
+    part = ((answer.times - begins) / (ends - begins))[:, None]
+    first, last = (p * np.sinc(p * angle) / np.sinc(angle) for p in (1 - part, part))
+    return np.asarray(first * one + np.sign(cosine) * last * other)
+
+
+_Between = Callable[[Answer, Places, Floats, Floats], Floats]
+_KINDS: Final[dict[str, tuple[_Between, _Between]]] = {
+    "linear interpolation": (_linear, _linear),
+    "linear interpolation and slerp of the attitude": (_linear, _along_arcs),
+    "cubic interpolation (Hermite)": (_cubic, _cubic),
+    "values that are held": (_held, _held),
 }

@@ -111,9 +111,7 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
         rows = mean / spacing * answer.stride
         if abs(rows - round(rows)) < _PATTERN and round(rows):
             return f"rows shifted: row k holds the state of row k{round(rows):+d}"
-        return (
-            f"the clock is late by {-mean:.6g}" if mean < 0 else f"the clock is early by {mean:.6g}"
-        )
+        return f"the clock is {_off(late[1:], size)}"
     return (
         _every_so_many(answer, late, size)
         or _decimals(times, late, size)
@@ -121,6 +119,14 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
         or _whole_steps(times - answer.begins, times + late - answer.begins, size)
         or _factor_or_jumps(answer, late, size, spacing)
     )
+
+
+def _off(late: Floats, size: float) -> str:
+    """Return how a clock goes whose rows are exact so much later than it says."""
+    mean = float(np.mean(late))
+    if abs(mean) < _PATTERN * size:
+        return "in time"
+    return f"late by {-mean:.6g}" if mean < 0 else f"early by {mean:.6g}"
 
 
 def _every_so_many(answer: Answer, late: Floats, size: float) -> str | None:
@@ -234,6 +240,14 @@ def _factor_or_jumps(answer: Answer, late: Floats, size: float, spacing: float) 
             firsts, off = answer.places[jumps + 1] + 1, np.cumsum(np.rint(rows)).astype(int)
             words = (f"of row k{n:+d} from row {k} on" for k, n in zip(firsts, off, strict=True))
             return f"rows dropped or doubled: row k holds the state {', '.join(words)}"
+        pieces = np.split(late, jumps + 1)
+        if max(map(np.ptp, pieces)) < _PATTERN * size:
+            begins = times[jumps + 1] + answer.right.start
+            steps = (
+                f"{_off(piece, size)} from t = {begin:.6g} on"
+                for piece, begin in zip(pieces[1:], begins, strict=True)
+            )
+            return f"the clock is {_off(pieces[0], size)}, and {', '.join(steps)}"
     since = times - answer.begins
     powers = np.stack([since, since**2], axis=1)
     rate, bend = np.linalg.lstsq(powers, late, rcond=None)[0]

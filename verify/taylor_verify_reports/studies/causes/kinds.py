@@ -21,8 +21,13 @@ from taylor_verify_reports.studies.causes.kind import (
     right,
     setting,
 )
-from taylor_verify_reports.studies.causes.kinds_of_loads import OF_LOADS
-from taylor_verify_reports.studies.causes.kinds_of_rows import AT_WHOLE_STEPS, LATER, OF_ROWS
+from taylor_verify_reports.studies.causes.kinds_of_loads import LATER_OF_LOADS, OF_LOADS
+from taylor_verify_reports.studies.causes.kinds_of_rows import (
+    AT_WHOLE_STEPS,
+    LATER,
+    LATER_OF_ROWS,
+    OF_ROWS,
+)
 from taylor_verify_reports.studies.causes.kinds_of_steps import DAMPING_STEP, OF_STEPS
 from taylor_verify_reports.studies.causes.simulated import (
     Law,
@@ -380,4 +385,14 @@ SIMPLE: Final = (
     Kind("Radau at 1e-6", (), _coarse("Radau", 1e-6)),
     Kind("load for a while", ("from t =",), of(_for_a_while), ("free", "wheels", *FLUID)),
 )
-KINDS: Final = (*SIMPLE, *OF_ROWS, *OF_STEPS, *OF_LOADS, *LATER, DAMPING_STEP, AT_WHOLE_STEPS)
+KINDS: Final = (
+    *SIMPLE,
+    *OF_ROWS,
+    *OF_STEPS,
+    *OF_LOADS,
+    *LATER,
+    DAMPING_STEP,
+    AT_WHOLE_STEPS,
+    *LATER_OF_ROWS,
+    *LATER_OF_LOADS,
+)

@@ -183,9 +183,6 @@ OF_LOADS: Final = (
         _V,
     ),
     Kind("drag over ground", ("ground",), _with(wind=lambda v, s, e: s.current), _V),
-    Kind("rate of the current left out", ("rate of the current",), _over_ground("rate"), _V),
-    Kind("C_A over ground", ("take the velocity over ground",), _over_ground("C_A"), _V),
-    Kind("added mass over ground", ("moves over ground",), _over_ground("rate", "C_A"), _V),
     # A pulse that is held is a pulse that begins and ends later.
     Kind(
         "loads held over a step",
@@ -227,4 +224,12 @@ OF_LOADS: Final = (
         _with(gain=lambda c, s, e: (1 + e) * c.gain),
         _S,
     ),
+)
+# Kinds that came later stand last of all.
+LATER_OF_LOADS: Final = (
+    Kind("rate of the current left out", ("rate of the current",), _over_ground("rate"), _V),
+    Kind("C_A over ground", ("take the velocity over ground",), _over_ground("C_A"), _V),
+    Kind("added mass over ground", ("moves over ground",), _over_ground("rate", "C_A"), _V),
+    Kind("weight turned by R", ("turned the wrong way",), _with(hangs_back=True), _V),
+    Kind("drag along space axes", ("along space axes",), _with(is_drag_in_space=True), _V),
 )

@@ -168,6 +168,21 @@ def _cubic(s: Sample, d: Draw, size: float) -> Rows:
     return Rows(times, v, q / np.linalg.norm(q, axis=1, keepdims=True))
 
 
+def _slerp(s: Sample, d: Draw, size: float) -> Rows:
+    from scipy.spatial.transform import Rotation, Slerp
+
+    rows, nodes = right(s), np.arange(0, len(s.times), int(d.integers(3, 6)))
+    times, known = s.times[: nodes[-1] + 1], s.times[nodes]
+    v = np.stack([np.interp(times, known, column) for column in rows.v[nodes].T], axis=1)
+    turns = Slerp(known, Rotation.from_quat(rows.q[nodes], scalar_first=True))(times)
+    return Rows(times, v, turns.as_quat(scalar_first=True))
+
+
+def _clock_steps(s: Sample, d: Draw, size: float) -> Rows:
+    late = 0.3 * s.times[1] * (np.arange(len(s.times)) >= int(d.integers(5, len(s.times) - 5)))
+    return right(s, s.times - late)._replace(times=s.times)
+
+
 def _capped(s: Sample, d: Draw, size: float) -> Rows:
     """Return a motion whose velocities are cut down after the first row."""
     later = integrated(replace(s, v0=s.v0 / (1 + size)), law(s))
@@ -229,4 +244,8 @@ LATER: Final = (
 # As many whole steps in each row are another pace of the clock.
 AT_WHOLE_STEPS: Final = Kind(
     "rows at whole steps", ("the last whole step", "clock"), _at_whole_steps
+)
+LATER_OF_ROWS: Final = (
+    Kind("slerp", ("interpolation and slerp",), _slerp),
+    Kind("clock that steps", ("the clock is in time, and late",), _clock_steps),
 )

@@ -24,6 +24,8 @@ class Vehicle:
     weight: float
     arm: Floats
     wind: Floats
+    hangs_back: bool = False
+    is_drag_in_space: bool = False
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -39,12 +41,20 @@ class Vehicle:
         )
 
     def load(self, t: float, v: Floats, q: Floats, own: Floats) -> Floats:
-        """Return force and couple; ``wind`` is a velocity in space axes that the drag counts as well."""
+        """Return force and couple; ``wind`` is a velocity in space axes that the drag counts as well.
+
+        The weight ``hangs_back`` by R in the place of R^T.
+        """
         turn = rotation(q)
         through = v + np.r_[turn.T @ self.wind, 0, 0, 0]
+        if self.is_drag_in_space:
+            through = np.r_[turn @ through[:3], turn @ through[3:]]
         load = -self.drag * np.abs(through) * through
+        if self.is_drag_in_space:
+            load = np.r_[turn.T @ load[:3], turn.T @ load[3:]]
         load[0] += self.thrust * (t < self.until)
-        load[3:] += cross(self.arm, turn.T @ np.array([0, 0, self.weight]))
+        hung = (turn if self.hangs_back else turn.T) @ np.array([0, 0, self.weight])
+        load[3:] += cross(self.arm, hung)
         return np.asarray(load)
 
 
