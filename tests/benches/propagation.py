@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import product
 from typing import Final
@@ -158,52 +158,38 @@ def _first_over_second(name: str) -> tuple[Side, Side]:
     return Action(Taylor().solve, lambda: pose(load(name), _RUNG)), known
 
 
+def _each(
+    group: str,
+    names: Iterable[str],
+    about: str,
+    sides: Callable[[str], tuple[Side, Side]],
+    target: Callable[[str], Target | None],
+    unit: str = "solve",
+) -> Iterator[Ratio]:
+    for name in names:
+        title = f"{group}/{name.replace(UNTIL, '-to-')}"
+        yield Ratio(title, about, partial(sides, name), target(name), unit=unit)
+
+
 def ratios() -> Iterator[Ratio]:
     """Yield what the driver adds to heyoka, in the order of the trade-off's scenes."""
-    for name in (*_SHORT, *_LONG):
-        yield Ratio(
-            f"solve/{name.replace(UNTIL, '-to-')}",
-            "a solve of a problem that the driver knows, over heyoka's call with the same integrator",
-            partial(_solve_over_plain, name),
-            _long_solve(name) if UNTIL in name else _SHORT_SOLVE,
-            unit="solve",
-        )
-    for name in _SHORT:
-        yield Ratio(
-            f"first-solve/{name}",
-            "the first solve of a body whose equations are compiled, over a further one",
-            partial(_first_over_second, name),
-            _FIRST,
-            unit="solve",
-        )
+    about = (
+        "a solve of a problem that the driver knows, over heyoka's call with the same integrator"
+    )
+    yield from _each("solve", _SHORT, about, _solve_over_plain, lambda name: _SHORT_SOLVE)
+    yield from _each("solve", _LONG, about, _solve_over_plain, _long_solve)
+    about = "the first solve of a body whose equations are compiled, over a further one"
+    yield from _each("first-solve", _SHORT, about, _first_over_second, lambda name: _FIRST)
     for name, code in product(_WRITTEN, ("quick", "optimised")):
-        yield Ratio(
-            f"user-{code}/{name}",
-            f"a solve with {code} code, over heyoka's call as its user writes it",
-            partial(_user_over, name, Taylor(is_optimised=code == "optimised")),
-            _SHORT_SOLVE,
-            unit="solve",
-        )
-    for name in _WRITTEN:
-        yield Ratio(
-            f"user-first/{name}",
-            "a first solve, code compiled, over heyoka's as its user writes it",
-            partial(_cold_over_user, name),
-            _SHORT_SOLVE,
-            unit="solve",
-        )
+        about = f"a solve with {code} code, over heyoka's call as its user writes it"
+        sides = partial(_user_over, solver=Taylor(is_optimised=code == "optimised"))
+        yield from _each(f"user-{code}", [name], about, sides, lambda name: _SHORT_SOLVE)
+    about = "a first solve, code compiled, over heyoka's as its user writes it"
+    yield from _each("user-first", _WRITTEN, about, _cold_over_user, lambda name: _SHORT_SOLVE)
+    about = "posing a body that was just read, over heyoka's call for it"
     for name in _SHORT:
-        yield Ratio(
-            f"pose/{name}",
-            "posing a body that was just read, over heyoka's call for it",
-            partial(_pose_over_plain, name),
-            limit=_POSED if name in _PLAIN else None,
-            unit="body",
-        )
-    for name in (_SHORT[0], _SHORT[2]):
-        yield Ratio(
-            f"samples/{name}",
-            f"posing and solving with {_SAMPLES:,} samples, over heyoka's call for as many",
-            partial(_both_over_plain, name),
-            unit="propagation",
-        )
+        limit, pair = _POSED if name in _PLAIN else None, partial(_pose_over_plain, name)
+        yield Ratio(f"pose/{name}", about, pair, limit=limit, unit="body")
+    about = f"posing and solving with {_SAMPLES:,} samples, over heyoka's call for as many"
+    some = _SHORT[0], _SHORT[2]
+    yield from _each("samples", some, about, _both_over_plain, lambda name: None, "propagation")

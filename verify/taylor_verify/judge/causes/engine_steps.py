@@ -1,4 +1,4 @@
-"""What engines do in a step: omega cut to a largest length, loads cleared after the first of a row."""
+"""Steps as engines have them: omega cut to a largest length, loads cleared after the first of a row."""
 
 from __future__ import annotations
 

@@ -6,10 +6,13 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.changed_equations import Equations
+from taylor_verify.judge.causes.candidate import Candidate
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.changed_texts import names_inertia
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import AND_REST, is_up_to_a_factor
+from taylor_verify.words.causes import with_numbers
 
 _SAME: Final = 1e-9
 # Entries are unchanged together as far as their ratios agree, at best and at worst to this part.
@@ -17,6 +20,21 @@ _UNCHANGED: Final = (1e-9, 1e-3)
 _NEAR: Final = 1e-6
 # What an added mass is that has this factor.
 _ADDED: Final = {0.0: "is missing", 2.0: "is there twice", -1.0: "has the other sign"}
+
+
+def described(right: Equations, candidate: Candidate) -> tuple[str, Changes]:
+    """Return a candidate in words, with its changes; a body has the factor that changes the least."""
+    changes = candidate.changes
+    if candidate.kind == "body" and candidate.count > 1:
+        mass = nearest_factor(right, changes["mass"])
+        free = ", all entries known up to one factor" * is_up_to_a_factor(right)
+        words = with_numbers(candidate.family.name + free, *entries(right.mass, mass))
+        return words, {"mass": mass}
+    words = structure(candidate.family, candidate.numbers)
+    named = ": ".join(filter(None, (words, candidate.text)))
+    if "mass" in changes and names_inertia(right.loads):
+        named += ", and not in the texts of the loads"
+    return named, changes
 
 
 def nearest_factor(right: Equations, mass: Floats) -> Floats:

@@ -13,15 +13,12 @@ import numpy as np
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.changed_equations import Changes
-from taylor_verify.judge.causes.changed_texts import names_inertia
 from taylor_verify.judge.causes.fit import least_rest
-from taylor_verify.judge.causes.fitted_bodies import entries, nearest_factor, structure
+from taylor_verify.judge.causes.fitted_bodies import described
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.other_bodies import is_up_to_a_factor
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
-from taylor_verify.words.causes import with_numbers
 
 # Error of float64 over a whole answer, and of the attitude, which adds up the errors of all arcs.
 _FLOAT64: Final = 5e-13
@@ -306,9 +303,9 @@ class Choice:
         alike.sort(key=lambda each: self._nearness(each.candidate))
         first, shortened = alike[0], self._shortened(alike[0])
         best = shortened.candidate
-        text, changes = self._described(best)
+        text, changes = described(self.answer.right, best)
         others = dict.fromkeys(
-            self._described(each.candidate)[0]
+            described(self.answer.right, each.candidate)[0]
             for each in alike[1:]
             if not _are_same(each.candidate.changes, first.candidate.changes)
         )
@@ -369,25 +366,11 @@ class Choice:
         What the scene does not have is farther, and a clock, which no equation has. Of two numbers the one
         with fewer digits is nearer.
         """
-        has_number = " = " in self._described(candidate)[0]
+        has_number = " = " in described(self.answer.right, candidate)[0]
         is_written, is_clock = candidate.kind == WRITTEN, candidate.kind == "clock"
         is_new = bool(candidate.count) and not np.any(candidate.family.right)
         digits = sum(len(f"{number:.6g}") for number in candidate.numbers)
         return candidate.count, not is_written, is_new, has_number, is_clock, digits
-
-    def _described(self, candidate: Candidate) -> tuple[str, Changes]:
-        """Return a candidate in words, with its changes; a body has the factor that changes the least."""
-        right, changes = self.answer.right, candidate.changes
-        if candidate.kind == "body" and candidate.count > 1:
-            mass = nearest_factor(right, changes["mass"])
-            free = ", all entries known up to one factor" * is_up_to_a_factor(right)
-            words = with_numbers(candidate.family.name + free, *entries(right.mass, mass))
-            return words, {"mass": mass}
-        words = structure(candidate.family, candidate.numbers)
-        named = ": ".join(filter(None, (words, candidate.text)))
-        if "mass" in changes and names_inertia(right.loads):
-            named += ", and not in the texts of the loads"
-        return named, changes
 
 
 def _short(numbers: Floats) -> Floats:
