@@ -52,22 +52,14 @@ def test_the_attitude_tells_a_clock_from_a_factor_of_the_equations(
     assert [title[: len(start)] for title, start in zip(titled, words, strict=True)] == words
 
 
-STRAIGHT = """
-title = "Straight run"
-model = "kirchhoff"
-track = ["attitude", "centre"]
-[body]
-mass = 18
-inertia = [0.4, 1.5, 1.6]
-added_mass = [1.5, 16, 18, 0.1, 1, 1.1]
-force = ["7 - 6*u1", "-30*u2", "-30*u3"]
-[initial]
-linear_velocity = [0.2, 0, 0]
-angular_velocity = [0, 0, 0]
-[time]
-end = 5
-samples = 51
-"""
+STRAIGHT = text_of(
+    {
+        **{"mass": 18, "inertia": [0.4, 1.5, 1.6], "added_mass": [1.5, 16, 18, 0.1, 1, 1.1]},
+        "force": ["7 - 6*u1", "-30*u2", "-30*u3"],
+    },
+    {"linear_velocity": [0.2, 0, 0], "angular_velocity": [0, 0, 0]},
+    *(5, 51, "attitude", "centre"),
+)
 RUN = np.round(np.arange(51) * 0.1, 6)
 
 

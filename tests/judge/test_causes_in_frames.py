@@ -22,26 +22,17 @@ from taylor_verify.scenes.reading.reader import read
 CURRENT = np.array([0.3, -0.2, 0.1])
 NU, Q = [0.9, 0.1, -0.2, 0.3, -0.4, 0.5], np.array([0.8, 0.2, -0.4, 0.4])
 MASS = np.array([3.0, 4.0, 5.0, 0.6, 0.9, 1.1])
-VEHICLE = """
-title = "Vehicle in a current"
-model = "kirchhoff"
-track = ["attitude", "centre"]
-[body]
-mass = 2
-inertia = [0.4, 0.5, 0.6]
-added_mass = [1, 2, 3, 0.2, 0.4, 0.5]
-current = [0.3, -0.2, 0.1]
-force = ["1 - 0.5*u1", "-0.6*u2", "-0.7*u3"]
-couple = ["0.1*sin(t)", "0", "0"]
-[initial]
-linear_velocity = [0.9, 0.1, -0.2]
-angular_velocity = [0.3, -0.4, 0.5]
-attitude = [0.8, 0.2, -0.4, 0.4]
-centre = [1, 2, 3]
-[time]
-end = 3
-samples = 31
-"""
+VEHICLE = text_of(
+    {
+        **{"mass": 2, "inertia": [0.4, 0.5, 0.6], "added_mass": [1, 2, 3, 0.2, 0.4, 0.5]},
+        "current": [0.3, -0.2, 0.1],
+        "force": ["1 - 0.5*u1", "-0.6*u2", "-0.7*u3"],
+        "couple": ["0.1*sin(t)", "0", "0"],
+    },
+    {"linear_velocity": [0.9, 0.1, -0.2], "angular_velocity": [0.3, -0.4, 0.5]}
+    | {"attitude": [0.8, 0.2, -0.4, 0.4], "centre": [1, 2, 3]},
+    *(3, 31, "attitude", "centre"),
+)
 TIMES = np.round(np.arange(0, 31) * 0.1, 6)
 NAMES = ("u1", "u2", "u3", "w1", "w2", "w3")
 # The rate of the centre by R and the linear velocity.

@@ -109,6 +109,8 @@ FIRST = [("*q1", "*q2"), ("*q2", "*q3"), ("*q3", "*q0")]
 PRODUCTS = [(f"I{i}{k}*", "0*") for i in (1, 2, 3) for k in (1, 2, 3) if i != k]
 GROUND = [(f"u{i}", f"(u{i} + 0.2*r1{i} + 0.1*r2{i})") for i in (1, 2, 3)]
 DOUBLED = [(f"{x}*abs", f"{2 * x}*abs") for x in (0.3, 0.5, 0.6)]
+HALVED = [("-0.1*w1", "-0.05*w1"), ("-0.1*w2", "-0.05*w2"), ("-0.2*w3", "-0.1*w3")]
+LIMITED = TIMED.replace("0.3*sin(0.7*t)", "clip(0.25*sin(0.7*t), -0.3, 0.3)")
 THRUST = [
     ("0.4 -", "0.4*r11 -"),
     ('"-0.5*abs', '"0.4*r12 - 0.5*abs'),
@@ -202,6 +204,9 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
             (TOP, [(HEAVY, "moment = [-0.3, 0.6, 0]")], "weight fixed in body axes"),
             (TOP, [("-3]", "3]")], "moment with the other sign"),
             (VEHICLE, [("abs", "")], "the loads have no abs"),
+            (VEHICLE, HALVED, "factor of all linear drag in the couple"),
+            (WHOLE, [("norm", "-norm")], "s with the other sign"),
+            (LIMITED, [("-0.3, 0.3", "-0.22, 0.22")], "the number 0.3 in all texts"),
             (
                 VEHICLE,
                 [(f"abs(u{i})", "1") for i in (1, 2, 3)],

@@ -18,22 +18,11 @@ from builders.turns import by_turns
 from builders.wrong_dynamics import turned
 from scipy.spatial.transform import Rotation
 
-RIGID = """
-title = "Body"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [[2.6, 0.3, -0.45], [0.3, 3.4, 0.2], [-0.45, 0.2, 1.9]]
-[initial]
-omega = [0.6, -0.5, 0.9]
-attitude = [0.5, 0.3, -0.7, 0.2]
-[time]
-end = 8
-samples = 81
-"""
 TENSOR = np.array([[2.6, 0.3, -0.45], [0.3, 3.4, 0.2], [-0.45, 0.2, 1.9]])
-Q = np.array([0.5, 0.3, -0.7, 0.2]) / np.linalg.norm([0.5, 0.3, -0.7, 0.2])
-START = np.array([0.6, -0.5, 0.9, *Q])
+SPIN = {"omega": [0.6, -0.5, 0.9], "attitude": [0.5, 0.3, -0.7, 0.2]}
+RIGID = text_of({"inertia": TENSOR.tolist()}, SPIN, 8, 81, "omega", "attitude")
+Q = np.array(SPIN["attitude"]) / np.linalg.norm(SPIN["attitude"])
+START = np.array([*SPIN["omega"], *Q])
 TIMES = np.round(np.arange(81) * 0.1, 6)
 Step = Callable[[Array, float], Array]
 
@@ -222,7 +211,9 @@ def test_the_order_of_an_update_in_place_is_named(
 
 
 MOMENT = np.array([0.2, -0.3, 0.25])
-PUSHED = RIGID.replace("[initial]", "moment = [0.2, -0.3, 0.25]\n[initial]")
+PUSHED = text_of(
+    {"inertia": TENSOR.tolist(), "moment": MOMENT.tolist()}, SPIN, 8, 81, "omega", "attitude"
+)
 
 
 def pushed(moment: Array, z: Array, h: float) -> Array:

@@ -61,6 +61,8 @@ _NEARLY: Final = 0.02
 _BEGINS: Final = 2
 # Methods are replayed over so many rows at most.
 _LONGEST: Final = 8
+# What a fit from far may leave of the defects: its kinks are others than those that arcs are stepped to.
+_FAR: Final = 0.01
 # A fit that leaves less is no fit of these arcs alone.
 _ALONE: Final = 1e-4
 # The pace of a motion by a coarse method is wrong by no more than this part.
@@ -307,7 +309,7 @@ class Search:
                     is_new = all(abs(fit.numbers - end) > _APART * family.scale for end in ends)
                     if np.isfinite(fit.size) and is_new:
                         ends.append(fit.numbers)
-                        candidate = self._candidate(family, fit)
+                        candidate = replace(self._candidate(family, fit), near=_FAR)
                         yield candidate
                         if candidate.defects < _ALONE or self._is_exact(candidate):
                             break

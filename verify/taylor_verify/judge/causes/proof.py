@@ -62,14 +62,17 @@ def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion |
     from_start = answer.with_start(equations.mass)
     if from_start.count < 2:
         return None
-    n, count, arcs = answer.n, components or equations.coupled, row_to_row(from_start)
+    n, arcs, has_kinks_ahead = answer.n, row_to_row(from_start), has_kinks(equations)
+    # Maps of the attitude go over kinks, to which the motion is stepped.
+    least = n + 4 if has_kinks_ahead and answer.file.q is not None else 0
+    count = components or max(equations.coupled, least)
     rows = from_start.states(count)
     frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
     rows[0] = np.concatenate([answer.first(equations.mass), *frame])[:count]
     steps = 1 if answer.stepping else _enough_steps(equations, arcs, rows)
     scale = np.concatenate([answer.sizes, np.ones(4), np.full(3, answer.reach)])[:count]
 
-    has_kinks_ahead, of_kinks = has_kinks(equations), list[Floats]()
+    of_kinks = list[Floats]()
 
     def go(z: Floats, is_near: bool) -> Floats:
         ends = arcs.moved(equations, z, steps)

@@ -332,14 +332,12 @@ def _weighted(parts: list[str], which: set[int], value: float) -> str:
 def _of_drag(loads: Loads) -> Iterator[Number]:
     """Yield the factor of all terms that read velocities, of linear or quadratic ones, of one vector."""
     names, own = readers(loads, VELOCITIES), texts_of_vectors(loads)
-    vectors = [name for name, _ in loads.vectors]
+    vectors = (name for name, _ in loads.vectors)
     every = dict[tuple[frozenset[int], ...], tuple[str, Callable[[str], set[int]], str]]()
-    for key, (words, is_drag) in product(
-        ["", *vectors] if len(vectors) > 1 else [""], _DRAGS.items()
-    ):
+    for key, (words, is_drag) in product([*vectors, ""], _DRAGS.items()):
         drag: Callable[[str], set[int]] = partial(_drag_of, names, is_drag)
         of_key = (drag(str(p.entry)) if key in ("", key_of(p)) else () for p in own)
-        # Where all of the drag is linear, or quadratic, or in one vector, the later words say it.
+        # Where all of the drag is in one vector, or is linear, or quadratic, the later words say it.
         every[tuple(map(frozenset, of_key))] = f"{words}{f' in the {key}' * bool(key)}", drag, key
     for parts, (words, drag, key) in every.items():
         if sum(map(bool, parts)) > 1:
