@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import text_of
 from builders.turns import by_turns
 
 from taylor_verify.exact.printed import document
@@ -64,22 +65,14 @@ def test_printed_digits_are_within_the_radius_on_every_route(scene: str, digits:
                 assert max(errors(row, sharp[other][k]).values()) <= room**2
 
 
-CANCELLING = """
-title = "An impulse that a force takes away"
-model = "kirchhoff"
-[body]
-force = ["1/3", "2/3", 0]
-[body.energy]
-linear = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-coupling = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]
-angular = [[1, 0, 0], [0, 2, 0], [0, 0, 3]]
-[initial]
-linear_impulse = ["-1/7", "-2/7", 0]
-angular_impulse = [0, 0, 0]
-[time]
-end = 1
-samples = 2
-"""
+DIAGONALS = {"linear": [1, 1, 1], "coupling": [0, 0, 0], "angular": [1, 2, 3]}
+ENERGY = {name: np.diag(entries).tolist() for name, entries in DIAGONALS.items()}
+# An impulse that a force takes away.
+CANCELLING = text_of(
+    {"force": ["1/3", "2/3", 0], "energy": ENERGY},
+    {"linear_impulse": ["-1/7", "-2/7", 0], "angular_impulse": [0, 0, 0]},
+    *(1, 2),
+)
 
 
 @pytest.mark.parametrize("left", [Fraction(1, 10**100), Fraction(0)])
