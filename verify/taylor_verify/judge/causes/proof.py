@@ -102,11 +102,10 @@ def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion |
 
 
 def _enough_steps(equations: Equations, arcs: Arcs, rows: Floats) -> int:
-    """Return the steps of an arc whose error is below a tenth of the file's rounding."""
+    """Return the steps of an arc whose error is below a tenth of the file's rounding, and that of all."""
     answer, some = arcs.answer, np.array(evenly(len(arcs.first), _SOME))
-    goal = (
-        np.maximum(0.5 / len(arcs.first) * answer.rounding, 2e-14)[:, None] * answer.sizes[:, None]
-    )
+    part = min(0.1, 2 / len(arcs.first))
+    goal = np.maximum(part * answer.rounding, 2e-14)[:, None] * answer.sizes[:, None]
     begin, few = rows[some].T[None], replace(arcs, first=some, last=some + 1)
     return enough_steps(
         lambda steps: few.moved(equations, begin, steps)[0, : answer.n],

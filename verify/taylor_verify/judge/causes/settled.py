@@ -99,7 +99,13 @@ class Choice:
             if proven and self._is_far_behind(proven[0], candidate):
                 continue
             is_near = self._is_near(candidate)
-            proof = self._proof(candidate, leaves) if is_near else self._in_noise(candidate, leaves)
+            try:
+                prove = self._proof if is_near else self._in_noise
+                proof = prove(candidate, leaves)
+            except Spent:
+                if not proven:
+                    raise
+                break  # what is proven is said
             if proof is None:
                 continue
             if proven and candidate.count > max(1, proven[0].candidate.count):
