@@ -73,7 +73,7 @@ class Candidate:
 
     @property
     def is_nothing(self) -> bool:
-        """True for the scene's own numbers, a factor that prints as 1, and no step, or one back in time."""
+        """True for the scene's own numbers, a factor that prints as 1, and no step of damping."""
         if not self.count:
             return False
         if np.all(np.abs(self.numbers - self.family.right) <= _SAME * self.family.scale):

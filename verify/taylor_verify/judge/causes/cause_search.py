@@ -1,7 +1,8 @@
 """The search for likely causes: rows and times first, then conventions and starts, then equations.
 
-Only what is proven on the whole answer is said. To add a fault: add it to terms.py, other_bodies.py,
-replayed_methods.py or inexact_conventions.py, a broken twin to the tests, a line to docs/verdicts.md.
+Only what is proven on the whole answer is said. To add a fault: add it to the list of its kind (terms.py,
+other_bodies.py, changed_texts.py, misread_states.py, replayed_methods.py, kinematics.py, paths.py,
+inexact_conventions.py, stamps.py), a broken twin to the tests, a line to docs/verdicts.md.
 """
 
 from __future__ import annotations

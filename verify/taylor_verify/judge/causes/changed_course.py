@@ -77,7 +77,7 @@ class Courses(Evidence):
         return motion if np.all(np.isfinite(motion.v)) else None
 
     def motion_of_fault(self, answer: Answer, changes: Changes) -> Motion | None:
-        """Return the motion of a fault that explains some rows, which may cost more than is left."""
+        """Return the motion of a fault that explains some rows; there is work for it, whatever is left."""
         answer.budget.left = max(answer.budget.left, _SETTLED)
         return self.settled(answer, changes)
 

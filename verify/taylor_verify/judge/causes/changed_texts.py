@@ -303,7 +303,7 @@ def _with_part(
     for name in names:
         split = [_split(str(entry), is_part) for entry in vectors[name]]
         parts = [part for _, part in split]
-        vectors[name] = tuple(_plus(stay, change(parts, i)) for i, (stay, _) in enumerate(split))
+        vectors[name] = tuple(plus(stay, change(parts, i)) for i, (stay, _) in enumerate(split))
     return replace(loads, vectors=tuple(vectors.items()))
 
 
@@ -316,7 +316,7 @@ def _split(text: str, is_part: Callable[[str], bool]) -> tuple[str, str]:
     return stay, part
 
 
-def _plus(one: Entry, other: str) -> str:
+def plus(one: Entry, other: str) -> str:
     """Return the sum of two texts."""
     if other == "0":
         return str(one)
@@ -387,6 +387,6 @@ def added(loads: Loads, more: Mapping[str, Sequence[str]]) -> Loads:
     """Return the loads with more texts in each of the vectors."""
     own, none = dict(loads.vectors), tuple[Entry, ...](ZERO_VECTOR)
     vectors = {
-        name: tuple(map(_plus, own.get(name, none), more[name])) for name in VECTORS[loads.model]
+        name: tuple(map(plus, own.get(name, none), more[name])) for name in VECTORS[loads.model]
     }
     return replace(loads, vectors=tuple(vectors.items()))

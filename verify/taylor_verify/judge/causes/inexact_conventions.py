@@ -1,7 +1,8 @@
 """Conventions of a file that are no exact reading of its columns: signs, offsets, turned and moving frames.
 
-All rows are compared with the truth, fewest numbers first. A convention leaves at most ten
-roundings of the file, or the millionth part of the error: the simulator has errors of its own.
+All rows are compared with the truth, fewest numbers first. A convention without numbers leaves at most ten
+roundings of the file, one with fitted numbers one and a half, or a part of the error that each reading has,
+a millionth most often: the simulator has errors of its own.
 """
 
 from __future__ import annotations
@@ -99,7 +100,7 @@ def readings(answer: Answer) -> dict[str, Cause]:
             bound = max(most * answer.roundings[name], reading.part * answer.worst[name])
             if left <= bound and left < _MOST * answer.worst[name]:
                 # Of two that leave no more than roundings, the simpler one was tried first.
-                near.append((reading.count, max(left, least), place, reading.name))
+                near.append((reading.count, max(left, least), place, reading.name, left))
         if near:
             count = min(each[0] for each in near)
             same = sorted(each for each in near if each[0] == count)
@@ -108,7 +109,7 @@ def readings(answer: Answer) -> dict[str, Cause]:
             causes[name] = Cause(
                 f"{noun} {same[0][3]}",
                 "convention",
-                {name: same[0][1] / answer.worst[name]},
+                {name: same[0][4] / answer.worst[name]},
                 alike=tuple(f"{noun} {each[3]}" for each in alike),
             )
     omega = causes.get("omega")

@@ -1,4 +1,4 @@
-"""Loads whose own states are run otherwise: at other times, late, without limits, wheels half modelled."""
+"""Loads whose own states are run otherwise: at other times, late, standing still, wheels half modelled."""
 
 from __future__ import annotations
 

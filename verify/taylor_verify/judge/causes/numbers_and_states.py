@@ -1,4 +1,4 @@
-"""Causes in the numbers of loads and in states of a scene's own, where no row begins an arc."""
+"""Causes in states of a scene's own, where no row begins an arc, and in numbers of loads, on some rows."""
 
 from __future__ import annotations
 

@@ -17,6 +17,7 @@ from taylor_verify.judge.causes.changed_texts import (
     added,
     alone_and_together,
     decimal,
+    plus,
     renamed,
     rewritten,
     sum_of,
@@ -41,17 +42,17 @@ def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
     words = "the loads take the velocity over ground, not that through the water"
     yield from alone_and_together(loads, words, partial(renamed, names=ground))
     for words, entry in (
-        ("not turned into body axes", None),
+        ("not turned into body axes", ""),
         ("turned the wrong way, by R", "r{0}{1}"),
     ):
-        names = {
-            name: f"({text} - {_other_current(loads, entry, i)})"
-            for i, (name, text) in enumerate(ground.items(), 1)
-        }
-        yield (
-            f"the current in the loads is {words}",
-            rewritten(loads, partial(renamed, names=names)),
+        others = (
+            turned_entry(loads.current, entry, i) if entry else f"({decimal(own)})"
+            for i, own in enumerate(loads.current, 1)
         )
+        pairs = zip(ground.items(), others, strict=True)
+        names = {name: f"({text} - {other})" for (name, text), other in pairs}
+        other = rewritten(loads, partial(renamed, names=names))
+        yield f"the current in the loads is {words}", other
     rate = "the rate of the current in body axes is left out"
     yield (
         f"{rate}: nu' over ground for that through the water",
@@ -68,12 +69,6 @@ def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
     both = (_plus(a, b) for a, b in zip(slow, turning, strict=True))
     name = "the added mass moves over ground, not through the water: M_A nu' and C_A(nu) nu"
     yield name, _with(loads, *both)
-
-
-def _other_current(loads: Loads, entry: str | None, i: int) -> str:
-    """Return a component of the current by the matrix of these entries, or as it stands in space axes."""
-    own = f"({decimal(loads.current[i - 1])})"
-    return own if entry is None else turned_entry(loads.current, entry, i)
 
 
 def _accelerated(mass: Floats, current: _Vector) -> tuple[_Vector, _Vector]:
@@ -115,5 +110,5 @@ def _cross(a: _Vector, b: _Vector) -> _Vector:
 
 
 def _plus(a: _Vector, b: _Vector) -> _Vector:
-    one, two, three = (sum_of([("1", x), ("1", y)]) for x, y in zip(a, b, strict=True))
+    one, two, three = map(plus, a, b)
     return one, two, three

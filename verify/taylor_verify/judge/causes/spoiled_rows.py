@@ -91,18 +91,23 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
         nodes = np.arange(0, answer.count, every)
         if len(nodes) < _FEWEST or np.any(bad[nodes]):
             continue
+        tried = dict[str, dict[str, float]]()
         for name, (between, of_q) in _KINDS.items():
             v = between(answer, nodes, file.v, rates)
             q = None if file.q is None else of_q(answer, nodes, file.q, turns)
             unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
-            motion = Motion(v, unit)
-            leaves = _leaves(answer, answer.errors(motion), np.s_[: nodes[-1]])
-            if not leaves:
-                return None
-            allowed = max(_LEAVES, min(0.1, _ROUNDINGS * answer.floor([*leaves])))
-            if max(leaves.values()) <= allowed:
-                words = f"{name} between exact rows: every {every * abs(answer.stride)} rows one is exact"
-                return Cause(words, "interpolation", leaves)
+            errors = answer.errors(Motion(v, unit))
+            tried[name] = _leaves(answer, errors, np.s_[: nodes[-1]])
+        # Small turns are nearly linear.
+        name, leaves = min(tried.items(), key=lambda each: max(each[1].values(), default=np.inf))
+        if not leaves:
+            return None
+        allowed = max(_LEAVES, min(0.1, _ROUNDINGS * answer.floor([*leaves])))
+        if max(leaves.values()) <= allowed:
+            words = (
+                f"{name} between exact rows: every {every * abs(answer.stride)} rows one is exact"
+            )
+            return Cause(words, "interpolation", leaves)
     return None
 
 
