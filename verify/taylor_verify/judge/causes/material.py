@@ -51,7 +51,7 @@ _FEWEST_ATTITUDES: Final = 20
 _TOO_COARSE: Final = 1e-2
 # The work of a search; a motion without closed form takes as long itself.
 _BUDGET: Final = 400_000.0
-_BUDGET_WITHOUT_CLOSED_FORM: Final = 2_700_000.0
+_BUDGET_WITHOUT_CLOSED_FORM: Final = 3_200_000.0
 
 
 class ExactMotion:

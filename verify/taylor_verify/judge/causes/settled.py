@@ -25,6 +25,7 @@ _FLOAT64: Final = 5e-13
 _FLOAT64_ADDED: Final = 1e-11
 # Defects of so many roundings of the file may be left.
 _DEFECT_ROUNDINGS: Final = 30.0
+_EXACT_ROUNDINGS: Final = 5.0
 # Each number after the first has to leave so much less: many fit nearly whatever is wrong.
 _OF_EACH_NUMBER: Final = 0.1
 # Two families at once leave at most this.
@@ -89,7 +90,7 @@ class Choice:
     def cause(self, candidates: Iterable[Candidate], leaves: float = LEAVES) -> Cause | None:
         """Return the proven cause, with all others that explain as well."""
         proven: list[_Proven] = []
-        for candidate in sorted(self._worth_a_proof([*candidates]), key=_simplest):
+        for candidate in sorted(self._worth_a_proof([*candidates]), key=self._turn):
             if proven and candidate.count > proven[0].candidate.count:
                 decided = self._is_decided(proven[0].candidate, candidate, proven)
                 if decided and candidate.count > 1:
@@ -98,9 +99,8 @@ class Choice:
                     continue
             if proven and self._is_far_behind(proven[0], candidate):
                 continue
-            is_near = self._is_near(candidate)
+            prove = self._proof if self._is_near(candidate) else self._in_noise
             try:
-                prove = self._proof if is_near else self._in_noise
                 proof = prove(candidate, leaves)
             except Spent:
                 if not proven:
@@ -116,6 +116,11 @@ class Choice:
             if len(proven) > _PROVEN:
                 break
         return self._cause(proven)
+
+    def _turn(self, candidate: Candidate) -> tuple[int, float, bool, float]:
+        """Return what a candidate is proven by before others: of those that are exact, what is written."""
+        defects = max(candidate.defects, _EXACT_ROUNDINGS * self.floor, FAIR)
+        return candidate.count, defects, candidate.kind != WRITTEN, candidate.defects
 
     def _worth_a_proof(self, candidates: Sequence[Candidate]) -> list[Candidate]:
         """Return the candidates whose defects allow a proof; without one, the best that noise may hide.
@@ -152,7 +157,7 @@ class Choice:
 
     def _is_decided(self, simple: Candidate, other: Candidate, proven: Sequence[_Proven]) -> bool:
         """Return True if a proven candidate with fewer numbers makes another one needless."""
-        if simple.defects > max(BETTER * other.defects, 5 * self.floor, NOTHING):
+        if simple.defects > max(BETTER * other.defects, _EXACT_ROUNDINGS * self.floor, NOTHING):
             return False
         kinds = {each.candidate.kind for each in proven}
         is_worse = other.defects > BETTER * max(simple.defects, self.floor)
@@ -166,7 +171,7 @@ class Choice:
 
     def _as_well(self, best: Candidate) -> float:
         """Return the defects that a candidate may leave which does as well as the best."""
-        return max(BETTER * best.defects, 5 * self.floor, NOTHING)
+        return max(BETTER * best.defects, _EXACT_ROUNDINGS * self.floor, NOTHING)
 
     def _proof(self, candidate: Candidate, most: float) -> _Proven | None:
         proof = self._left(candidate)
