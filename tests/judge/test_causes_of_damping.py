@@ -209,11 +209,11 @@ WEAK: dict[str, Callable[[float], float]] = {
 def test_two_drags_that_imitate_another_law_are_not_said(
     law: str, digits: int, tmp_path: Path
 ) -> None:
-    """Two drags fit any law where |w| hardly changes: twelve digits show the numbers of the true ones."""
+    """Two drags fit any law where |w| hardly changes: what they leave shows which law has two."""
     made = rigid(moment=lambda t, w, q: -WEAK[law](float(np.linalg.norm(w))) * w)
     printed = {name: [float(f"{x:.{digits}g}") for x in column] for name, column in made.items()}
     names = titles(tmp_path, BODY.format(load=""), printed)
-    is_shown = law == "linear and by the speed" and digits == 12
+    is_shown = law == "linear and by the speed"
     assert any("drag" in each and "|w|" in each for each in names) == is_shown
 
 
