@@ -27,18 +27,12 @@ _EACH: Final = "a limit of the {} on each axis"
 _LENGTH: Final = "a limit of the length of the {}"
 
 
-def has_limits(right: Equations) -> bool:
-    """Return True if a text of the scene has a clip."""
-    return right.loads is not None and bool(bounds(right.loads))
-
-
 def own_limits(right: Equations) -> Iterator[tuple[Family, Floats]]:
     """Yield the limits that a scene has, and where their fits may begin: what none limits has no slope."""
-    if right.loads is not None and has_limits(right):
-        ends = bounds(right.loads)
-        for number in numbers(right.loads):
-            if _moved(number, ends, number.put(2 * number.value)) == 2:
-                yield number.family(right), number.value * np.array(_FACTORS)
+    ends = bounds(right.loads)
+    for number in numbers(right.loads) if right.loads is not None and ends else ():
+        if _moved(number, ends, number.put(2 * number.value)) == 2:
+            yield number.family(right), number.value * np.array(_FACTORS)
 
 
 def _moved(number: Number, ends: Sequence[tuple[str, str]], other: Loads) -> int:

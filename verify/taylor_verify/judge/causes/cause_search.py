@@ -14,7 +14,6 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes import starts
-from taylor_verify.judge.causes.actuator_limits import has_limits
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import Dynamics
@@ -22,6 +21,7 @@ from taylor_verify.judge.causes.float_answer import Answer, matrices
 from taylor_verify.judge.causes.in_space_axes import in_world
 from taylor_verify.judge.causes.inexact_conventions import readings
 from taylor_verify.judge.causes.kinematics import kinematics
+from taylor_verify.judge.causes.limits import bounds
 from taylor_verify.judge.causes.numbers_and_states import in_numbers, in_states
 from taylor_verify.judge.causes.other_readings import attitudes, rates, with_omega
 from taylor_verify.judge.causes.parts_of_a_run import causes_in_pieces, of_part
@@ -159,7 +159,7 @@ def _of_moving_part(answer: Answer) -> list[Cause]:
         defects = starts.roundings(answer)
         # Another pulse is nearer than a part of the run without it.
         wrong = starts.wrong_arcs(defects)
-        has_parts = len(answer.right.switches) > 0 or has_limits(answer.right)
+        has_parts = len(answer.right.switches) > 0 or bool(bounds(answer.right.loads))
         is_part = has_parts and 0 < 2 * len(wrong) < len(defects)
         causes = _some(in_numbers(answer, wrong)) if is_part else []
         causes = causes or causes_in_pieces(answer, defects, causes_of) or _some(search.cause())

@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from functools import partial
 from itertools import combinations, product
 from typing import Final
@@ -20,6 +19,14 @@ from taylor_verify.judge.causes.texts import (
     rational,
     texts_of_vectors,
     with_entry,
+)
+from taylor_verify.judge.causes.vectors_of_texts import (
+    BY_R,
+    BY_TRANSPOSED,
+    decimal,
+    plus,
+    sum_of,
+    turned,
 )
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Loads
@@ -78,10 +85,8 @@ _Change = Callable[[Sequence[str], int], str]
 _CHANGES: Final[dict[str, _Change]] = {
     "left out": lambda parts, i: "0",
     "with the other sign": lambda parts, i: sum_of([("-1", parts[i])]),
-    "in space axes": lambda parts, i: sum_of(
-        zip((f"r{k}{i + 1}" for k in _AXES), parts, strict=True)
-    ),
-    _WRONG_WAY: lambda parts, i: sum_of(zip((f"r{i + 1}{k}" for k in _AXES), parts, strict=True)),
+    "in space axes": lambda parts, i: turned(parts, BY_TRANSPOSED)[i],
+    _WRONG_WAY: lambda parts, i: turned(parts, BY_R)[i],
 }
 
 
@@ -91,16 +96,16 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
         other = rewritten(loads, partial(renamed, names=names))
         if other != loads:
             yield words, other
-    yield from alone_and_together(
-        loads, "the loads have no abs", partial(renamed, names={"abs": ""})
-    )
+    yield from by_component(loads, "the loads have no abs", partial(renamed, names={"abs": ""}))
     yield from _other_speeds(loads)
     yield from _exchanged(loads)
     yield from _named_otherwise(loads)
     some = [name for name, entries in loads.vectors if has_text(entries)]
     for name in some:
-        turned = _with_part(loads, [name], lambda term: True, _CHANGES[_WRONG_WAY])
-        yield f"{name} {_WRONG_WAY}", turned
+        yield (
+            f"{name} {_WRONG_WAY}",
+            _with_part(loads, [name], lambda term: True, _CHANGES[_WRONG_WAY]),
+        )
     yield from _drag_in_space(loads, some)
     for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):
         yield f"{noun} {words}", _with_part(loads, vectors, is_part, change)
@@ -119,13 +124,8 @@ def has_text(entries: Iterable[Entry]) -> bool:
 def _other_speeds(loads: Loads) -> Iterator[tuple[str, Loads]]:
     """Yield drag by other speeds, in all texts and in those of one vector alone."""
     for words, change in _SPEEDS.items():
-        every = rewritten(loads, change)
-        if every != loads:
-            yield words, every
-        for name, _ in loads.vectors:
-            alone = rewritten(loads, change, name)
-            if alone not in (loads, every):
-                yield f"{words}, in the {name} alone", alone
+        by_vector = ((f"the {name}", rewritten(loads, change, name)) for name, _ in loads.vectors)
+        yield from _together_and_alone(loads, words, rewritten(loads, change), by_vector)
     by_components = _by_components(loads)
     if by_components != loads:
         yield (
@@ -134,17 +134,23 @@ def _other_speeds(loads: Loads) -> Iterator[tuple[str, Loads]]:
         )
 
 
-def alone_and_together(
+def by_component(
     loads: Loads, words: str, change: Callable[[str], str]
 ) -> Iterator[tuple[str, Loads]]:
     """Yield the loads with a change of all texts, and of one component of a vector alone."""
-    every = rewritten(loads, change)
+    alone = ((p.name, p.put(change(str(p.entry)))) for p in texts_of_vectors(loads))
+    yield from _together_and_alone(loads, words, rewritten(loads, change), alone)
+
+
+def _together_and_alone(
+    loads: Loads, words: str, every: Loads, alone: Iterable[tuple[str, Loads]]
+) -> Iterator[tuple[str, Loads]]:
+    """Yield loads with a change of every text, and with that of some alone, where they are others."""
     if every != loads:
         yield words, every
-    for place in texts_of_vectors(loads):
-        alone = place.put(change(str(place.entry)))
-        if alone not in (loads, every):
-            yield f"{words}, in {place.name} alone", alone
+    for where, other in alone:
+        if other not in (loads, every):
+            yield f"{words}, in {where} alone", other
 
 
 def _speed(component: re.Match[str]) -> str:
@@ -227,15 +233,12 @@ def key_of(place: Place) -> str:
 def _of_scene(loads: Loads) -> Iterator[tuple[str, _Names]]:
     """Yield the exchanges by the vectors that are given in space axes."""
     for name, entries in loads.space:
-        turned = {f"{name}{i}": turned_entry(entries, "r{0}{1}", i) for i in _AXES}
-        yield f"{name} of [space] is turned the wrong way, by R for R^T", turned
+        numbers = [decimal(entry) for entry in entries]
+        back = enumerate(turned(numbers, BY_R), 1)
+        words = f"{name} of [space] is turned the wrong way, by R for R^T"
+        yield words, {f"{name}{i}": f"({entry})" for i, entry in back}
         plain = {f"{name}{i}": f"({entry})" for i, entry in zip(_AXES, entries, strict=True)}
         yield f"{name} of [space] is not turned into body axes", plain
-
-
-def turned_entry(entries: tuple[Entry, ...], entry: str, i: int) -> str:
-    terms = (f"{entry.format(i, k)}*({decimal(x)})" for k, x in zip(_AXES, entries, strict=True))
-    return f"({' + '.join(terms)})"
 
 
 # Parts of the loads.
@@ -243,10 +246,10 @@ def turned_entry(entries: tuple[Entry, ...], entry: str, i: int) -> str:
 
 def _drag_in_space(loads: Loads, some: list[str]) -> Iterator[tuple[str, Loads]]:
     """Yield the drag of each vector, and of all, by velocities in space axes and along these."""
-    moving, situated = (readers(loads, names) for names in (VELOCITIES, _situated(loads)))
+    is_moving, is_situated = _what_is_read(loads)
 
     def is_drag(term: str) -> bool:
-        return _reads(moving, term) and not _reads(situated, term)
+        return is_moving(term) and not is_situated(term)
 
     for names in [*([name] for name in some), *[some] * (len(some) > 1)]:
         other = _with_part(loads, names, is_drag, _along_space)
@@ -265,10 +268,10 @@ def _parts(loads: Loads) -> Iterator[tuple[str, tuple[str, ...], Callable[[str],
 
     What the equations say without texts is left to them: all of a vector, and of both.
     """
-    moving, situated = (readers(loads, names) for names in (VELOCITIES, _situated(loads)))
+    is_moving, is_situated = _what_is_read(loads)
     kinds: dict[str, Callable[[str], bool]] = {
-        "without velocities": lambda term: not _reads(moving, term),
-        "that read more than velocities": lambda term: _reads(situated, term),
+        "without velocities": lambda term: not is_moving(term),
+        "that read more than velocities": is_situated,
     }
     split = {
         name: {term for text in map(str, own) for term in terms(text) if term != "0"}
@@ -289,6 +292,12 @@ def _parts(loads: Loads) -> Iterator[tuple[str, tuple[str, ...], Callable[[str],
             ):
                 known.append(part)
                 yield f"terms of {noun} {words}", names, is_part
+
+
+def _what_is_read(loads: Loads) -> tuple[Callable[[str], bool], Callable[[str], bool]]:
+    """Return whether a term reads a velocity, and whether it reads what is none."""
+    moving, situated = (readers(loads, names) for names in (VELOCITIES, _situated(loads)))
+    return partial(_reads, moving), partial(_reads, situated)
 
 
 def _reads(names: frozenset[str], text: str) -> bool:
@@ -314,18 +323,6 @@ def _split(text: str, is_part: Callable[[str], bool]) -> tuple[str, str]:
         sums[is_part(term)] += term
     stay, part = (each.strip().removeprefix("+").strip() or "0" for each in sums)
     return stay, part
-
-
-def plus(one: Entry, other: str) -> str:
-    """Return the sum of two texts."""
-    if other == "0":
-        return str(one)
-    return f"({one}) + {other}" if str(one) != "0" else other
-
-
-def sum_of(products: Iterable[tuple[str, str]]) -> str:
-    """Return the sum of products, of which those with a zero are left out."""
-    return " + ".join(f"{a}*({b})" for a, b in products if b != "0" and a != "(0)") or "0"
 
 
 def terms(text: str) -> list[str]:
@@ -369,18 +366,6 @@ def _situated(loads: Loads) -> frozenset[str]:
     states = (name for state in loads.states for name in state.components)
     tables = (name for name, _ in loads.tables)
     return frozenset(("t", *QUATERNION, *ROTATION, *CENTRE, *space, *states, *tables))
-
-
-def decimal(entry: Entry, sign: str = "") -> str:
-    """Return a number as a decimal if it or its double is one, with the other sign if there is one.
-
-    A name stays.
-    """
-    if isinstance(entry, str):
-        return f"{sign}{entry}"
-    value = -entry if sign else entry
-    text = str(value) if value.denominator == 1 else repr(float(value))
-    return text if value in (Fraction(text), float(text)) else str(value)
 
 
 def added(loads: Loads, more: Mapping[str, Sequence[str]]) -> Loads:

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.judge.causes.changed_texts import added, decimal, sum_of
+from taylor_verify.judge.causes.changed_texts import added
 from taylor_verify.judge.causes.texts import HANGING
+from taylor_verify.judge.causes.vectors_of_texts import (
+    BY_R,
+    BY_TRANSPOSED,
+    cross,
+    decimal,
+    turned,
+)
 from taylor_verify.numbers.tensors import ZERO_VECTOR, scaled
 from taylor_verify.scenes.loads.loads import Hung, Loads
 
 
 def hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
-    """Yield weight and buoyancy, each and both, left out, at the origin, or fixed in body axes."""
+    """Yield weight and buoyancy, each and both, left out, at other points, or in other axes."""
     has_force = [k for k, hung in enumerate(loads.hung) if any(hung.force)]
     points = [hung.at for hung in loads.hung]
     if len(has_force) > 1 and points[0] != points[1]:
@@ -61,39 +68,23 @@ _Texts = dict[str, list[str]]
 
 def _texts_of(hung: Hung) -> _Texts:
     """Return the force and the couple of a hung force, in body axes."""
-    return _at(hung, _turned(map(decimal, hung.force), "r{1}{0}"))
+    return _at(hung, turned(map(decimal, hung.force), BY_TRANSPOSED))
 
 
 def _at(hung: Hung, force: Sequence[str]) -> _Texts:
     """Return a force at the point of a hung one with its couple: the moment of a rigid body."""
-    couple = [
-        sum_of(
-            [(f"({decimal(hung.at[j])})", force[k]), (f"({decimal(hung.at[k], '-')})", force[j])]
-        )
-        for j, k in ((1, 2), (2, 0), (0, 1))
-    ]
+    couple = cross([*map(decimal, hung.at)], force)
     return {"force": [*force], "couple": couple, "moment": couple}
-
-
-def _turned(vector: Iterable[str], entry: str) -> list[str]:
-    """Return a vector turned by the matrix of these entries, as r{1}{0} are of R^T."""
-    parts = [*vector]
-    return [
-        sum_of((entry.format(i, k), part) for k, part in zip((1, 2, 3), parts, strict=True))
-        for i in (1, 2, 3)
-    ]
 
 
 def _with_arm_in_space(hung: Hung) -> _Texts:
     """Return a hung force whose point is fixed in space axes, from the origin."""
-    couple = _turned(_at(hung, [*map(decimal, hung.force)])["couple"], "r{1}{0}")
+    couple = turned(_at(hung, [*map(decimal, hung.force)])["couple"], BY_TRANSPOSED)
     return _texts_of(hung) | {"couple": couple, "moment": couple}
 
 
 _OTHERWISE: Final[dict[str, Callable[[Hung], _Texts]]] = {
     "fixed in body axes": lambda hung: _at(hung, [*map(decimal, hung.force)]),
-    "turned the wrong way, by R": lambda hung: _at(
-        hung, _turned(map(decimal, hung.force), "r{0}{1}")
-    ),
+    "turned the wrong way, by R": lambda hung: _at(hung, turned(map(decimal, hung.force), BY_R)),
     "at an arm that is not turned with the body": _with_arm_in_space,
 }

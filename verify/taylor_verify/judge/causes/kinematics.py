@@ -105,11 +105,10 @@ def kinematics(answer: Answer, right: Equations, method: Steps | None = None) ->
 
 def _turns(answer: Answer, right: Equations) -> tuple[_Turns, int]:
     """Return turns over as many rows as stand out of the rounding, up to a quarter, and that number."""
-    stride = 1
-    turns = _Turns(answer, some_arcs(answer), right)
+    turns, stride = _Turns(answer, some_arcs(answer), right), 1
     while turns.floor * _CLEAR > 1 and 8 * stride <= answer.count:
         stride *= 2
-        turns = _Turns(answer, some_arcs(answer, stride), right)
+        turns = replace(turns, arcs=some_arcs(answer, stride))
     return turns, stride
 
 

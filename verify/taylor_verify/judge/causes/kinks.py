@@ -6,7 +6,6 @@ the kink, but by the square of that little: it tells where the kink is.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -18,13 +17,12 @@ import numpy as np
 from taylor_verify.judge.causes.arcs import Arcs, moved
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Places
-from taylor_verify.judge.causes.limits import arguments
+from taylor_verify.judge.causes.limits import calls
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import places
 from taylor_verify.models.acting import Acting
 from taylor_verify.scenes.loads.vocabulary import VECTORS
 
-_CALL: Final = re.compile(r"\b(abs|clip|max|min)\(")
 # Of more arcs with a kink none is stepped to it, nor over more kinks of one arc.
 _MOST: Final = 128
 _MOST_OF_ARC: Final = 8
@@ -172,8 +170,8 @@ def _kinks(acting: Acting) -> tuple[Acting, ...]:
 
 def _of_text(text: str) -> Iterator[str]:
     """Yield what is zero at the kinks of a text."""
-    for call in _CALL.finditer(text):
-        yield from _of_call(call.group(1), arguments(text, call.start())[0])
+    for name, inside in calls(text):
+        yield from _of_call(name, inside)
 
 
 def _of_call(name: str, inside: Sequence[str]) -> Iterator[str]:

@@ -13,6 +13,7 @@ from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.vocabulary import Entry
 
 _CLIP: Final = "clip("
+_CALL: Final = re.compile(r"\b(abs|clip|max|min)\(")
 
 
 def other_limits(loads: Loads) -> Iterator[tuple[str, Loads]]:
@@ -25,14 +26,11 @@ def other_limits(loads: Loads) -> Iterator[tuple[str, Loads]]:
             yield "the length of the vector is limited, where the scene limits each axis", by_length
 
 
-def bounds(loads: Loads) -> list[tuple[str, str]]:
+def bounds(loads: Loads | None) -> list[tuple[str, str]]:
     """Return the lower and the upper end of each clip in the texts."""
-    ends = list[tuple[str, str]]()
-    for text in (str(place.entry) for place in places(loads)):
-        for at in (match.start() for match in re.finditer(re.escape(_CLIP), text)):
-            _, low, high = arguments(text, at)[0]
-            ends.append((low, high))
-    return ends
+    texts = () if loads is None else (str(place.entry) for place in places(loads))
+    every = (call for text in texts for call in calls(text))
+    return [(inside[1], inside[2]) for name, inside in every if name == "clip"]
 
 
 def _without_limits(text: str) -> str:
@@ -69,6 +67,12 @@ def _limited(entry: Entry) -> tuple[str, str] | None:
         return None
     inside, low, high = (each.strip() for each in parts)
     return (inside, high) if low.replace(" ", "") == f"-{high.replace(' ', '')}" else None
+
+
+def calls(text: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield the calls with a kink in a text: the name of the function and its arguments."""
+    for call in _CALL.finditer(text):
+        yield call.group(1), arguments(text, call.start())[0]
 
 
 def arguments(text: str, at: int) -> tuple[list[str], int]:

@@ -8,27 +8,26 @@ are p x W and q x W + p x U, where (p, q) = A (U, W).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Final
 
 from taylor_verify.judge.causes.changed_equations import Equations
-from taylor_verify.judge.causes.changed_texts import (
-    added,
-    alone_and_together,
+from taylor_verify.judge.causes.changed_texts import added, by_component, renamed, rewritten
+from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.vectors_of_texts import (
+    BY_R,
+    BY_TRANSPOSED,
+    cross,
     decimal,
     plus,
-    renamed,
-    rewritten,
     sum_of,
-    turned_entry,
+    turned,
 )
-from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.scenes.loads.loads import Loads
 
-_Vector = tuple[str, str, str]
-_U: Final[_Vector] = ("u1", "u2", "u3")
-_W: Final[_Vector] = ("w1", "w2", "w3")
+_U: Final = ("u1", "u2", "u3")
+_W: Final = ("w1", "w2", "w3")
 
 
 def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
@@ -36,21 +35,17 @@ def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
     loads = right.loads
     if loads is None or right.size == 3 or not any(loads.current):
         return
-    one, two, three = (turned_entry(loads.current, "r{1}{0}", i) for i in (1, 2, 3))
-    current = (one, two, three)
+    numbers = [decimal(entry) for entry in loads.current]
+    current = [f"({text})" for text in turned(numbers, BY_TRANSPOSED)]
     ground = {f"u{i}": f"(u{i} + {own})" for i, own in enumerate(current, 1)}
     words = "the loads take the velocity over ground, not that through the water"
-    yield from alone_and_together(loads, words, partial(renamed, names=ground))
-    for words, entry in (
-        ("not turned into body axes", ""),
-        ("turned the wrong way, by R", "r{0}{1}"),
+    yield from by_component(loads, words, partial(renamed, names=ground))
+    for words, others in (
+        ("not turned into body axes", numbers),
+        ("turned the wrong way, by R", turned(numbers, BY_R)),
     ):
-        others = (
-            turned_entry(loads.current, entry, i) if entry else f"({decimal(own)})"
-            for i, own in enumerate(loads.current, 1)
-        )
         pairs = zip(ground.items(), others, strict=True)
-        names = {name: f"({text} - {other})" for (name, text), other in pairs}
+        names = {name: f"({text} - ({other}))" for (name, text), other in pairs}
         other = rewritten(loads, partial(renamed, names=names))
         yield f"the current in the loads is {words}", other
     rate = "the rate of the current in body axes is left out"
@@ -66,49 +61,34 @@ def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
         "the Coriolis terms of the added mass take the velocity over ground",
         _with(loads, *turning),
     )
-    both = (_plus(a, b) for a, b in zip(slow, turning, strict=True))
+    both = (_sums(a, b) for a, b in zip(slow, turning, strict=True))
     name = "the added mass moves over ground, not through the water: M_A nu' and C_A(nu) nu"
     yield name, _with(loads, *both)
 
 
-def _accelerated(mass: Floats, current: _Vector) -> tuple[_Vector, _Vector]:
+def _accelerated(mass: Floats, current: Sequence[str]) -> tuple[list[str], list[str]]:
     """Return force and couple M (W x c, 0)."""
-    rate = _cross(_W, current)
+    rate = cross(_W, current)
     return _times(mass[:3, :3], rate), _times(mass[3:, :3], rate)
 
 
-def _coriolis(mass: Floats, current: _Vector) -> tuple[_Vector, _Vector]:
+def _coriolis(mass: Floats, current: Sequence[str]) -> tuple[list[str], list[str]]:
     """Return what the Coriolis terms of an added mass are more with U + c than with U."""
-    p, more = (
-        _plus(_times(mass[:3, :3], _U), _times(mass[:3, 3:], _W)),
-        _times(mass[:3, :3], current),
-    )
-    couple = _plus(_cross(_times(mass[3:, :3], current), _W), _cross(p, current))
-    return _cross(more, _W), _plus(couple, _cross(more, _plus(_U, current)))
+    p = _sums(_times(mass[:3, :3], _U), _times(mass[:3, 3:], _W))
+    more, of_couple = _times(mass[:3, :3], current), _times(mass[3:, :3], current)
+    couple = _sums(cross(of_couple, _W), cross(p, current))
+    return cross(more, _W), _sums(couple, cross(more, _sums(_U, current)))
 
 
-def _with(loads: Loads, force: _Vector, couple: _Vector) -> Loads:
+def _sums(one: Sequence[str], other: Sequence[str]) -> list[str]:
+    return [plus(a, b) for a, b in zip(one, other, strict=True)]
+
+
+def _with(loads: Loads, force: Sequence[str], couple: Sequence[str]) -> Loads:
     return added(loads, {"force": force, "couple": couple})
 
 
-def _times(matrix: Floats, vector: _Vector) -> _Vector:
-    one, two, three = (
-        sum_of(
-            (repr(float(factor)), text) for factor, text in zip(row, vector, strict=True) if factor
-        )
-        for row in matrix
-    )
-    return one, two, three
-
-
-def _cross(a: _Vector, b: _Vector) -> _Vector:
-    one, two, three = (
-        sum_of([(f"({a[j]})", b[k]), (f"({sum_of([('-1', a[k])])})", b[j])])
-        for j, k in ((1, 2), (2, 0), (0, 1))
-    )
-    return one, two, three
-
-
-def _plus(a: _Vector, b: _Vector) -> _Vector:
-    one, two, three = map(plus, a, b)
-    return one, two, three
+def _times(matrix: Floats, vector: Sequence[str]) -> list[str]:
+    """Return a matrix of numbers times a vector."""
+    rows = (zip(map(float, row), vector, strict=True) for row in matrix)
+    return [sum_of((repr(factor), text) for factor, text in row if factor) for row in rows]

@@ -142,9 +142,11 @@ def _times(answer: Answer, begin: int, end: int, is_right_before: bool, cause: C
 
 def _follows(answer: Answer, cause: Cause, row: int) -> bool:
     """Return True if a cause leads from a row to the next one, all the way."""
+    if cause.method is not None:
+        return True
     part = starts.piece(answer, row, row + 1)
     scene, changed = (
         starts.roundings(replace(part, right=part.right.changed(changes)))[0]
         for changes in ({}, cause.changes)
     )
-    return bool(cause.method is not None or changed <= max(_FEW_ROUNDINGS, _PART * scene))
+    return bool(changed <= max(_FEW_ROUNDINGS, _PART * scene))

@@ -90,7 +90,7 @@ class Choice:
     def cause(self, candidates: Iterable[Candidate], leaves: float = LEAVES) -> Cause | None:
         """Return the proven cause, with all others that explain as well."""
         proven: list[_Proven] = []
-        for candidate in sorted(self._worth_a_proof([*candidates]), key=self._turn):
+        for candidate in sorted(self._worth_a_proof([*candidates]), key=self._order):
             if proven and candidate.count > proven[0].candidate.count:
                 decided = self._is_decided(proven[0].candidate, candidate, proven)
                 if decided and candidate.count > 1:
@@ -117,8 +117,8 @@ class Choice:
                 break
         return self._cause(proven)
 
-    def _turn(self, candidate: Candidate) -> tuple[int, float, bool, float]:
-        """Return what a candidate is proven by before others: of those that are exact, what is written."""
+    def _order(self, candidate: Candidate) -> tuple[int, float, bool, float]:
+        """Return the place of a candidate among proofs: of the exact ones what is written comes first."""
         defects = max(candidate.defects, _EXACT_ROUNDINGS * self.floor, FAIR)
         return candidate.count, defects, candidate.kind != WRITTEN, candidate.defects
 

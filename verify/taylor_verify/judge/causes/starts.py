@@ -63,13 +63,13 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
     if leaves is None or max(leaves.values()) > may_leave(answer, answer.moving):
         return None
     last = answer.file.v[bad[-1] + 1 :]
-    *jumps, rest = (f"{answer.times[row + 1] + answer.right.start:.6g}" for row in bad)
+    *jumps, latest = (f"{answer.times[row + 1] + answer.right.start:.6g}" for row in bad)
     if _is_at_rest(answer, last):
         before = f"exact between jumps at t = {_listed(jumps)}" if jumps else "right"
-        name = f"at rest from t = {rest} on: the motion is {before} before, and then all velocities are 0"
+        name = f"at rest from t = {latest} on: the motion is {before} before, and then all velocities are 0"
         return Cause(name, "at rest", leaves)
     name = (
-        f"exact motion between jumps at t = {_listed([*jumps, rest])}, or loads for a short time before "
+        f"exact motion between jumps at t = {_listed([*jumps, latest])}, or loads for a short time before "
         "them: each piece is the scene's motion from its own first row"
     )
     return Cause(name, "jump", leaves)
