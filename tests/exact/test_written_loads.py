@@ -39,6 +39,7 @@ def test_a_kink_that_is_only_touched_is_not_followed() -> None:
         solution(scene).motion([Fraction(4), Fraction(5)], 20)
     assert refusal.value.motion is not None
     assert len(refusal.value.motion["omega"]) == 1
+    assert str(refusal.value).count("near t =") == 1
 
 
 def test_switches_are_exact() -> None:

@@ -359,6 +359,12 @@ def test_a_load_that_begins_or_ends_at_another_time_is_named(
     assert sentence.startswith(words)
 
 
+def test_what_no_text_may_have_is_not_tried_beside_a_switch() -> None:
+    """Other values of a power or a limit make no text: w^80, say. The switch has its word."""
+    text = PULSE.replace('"-0.1*', '"clip(w2^40, -0.1, 0.1)/9-0.1*')
+    assert names(text.replace("t-3", "t-2.25"), text) == ["switch at t = 3"]
+
+
 @pytest.mark.parametrize(
     "changes",
     by_turns(

@@ -331,7 +331,7 @@ class Walk:
                 self._box, self._largest, self._lengths, self._steps, self._now, self._pending
             )
         except Coarse as reason:
-            raise reason if reason.stuck is None else self._stuck(reason.because) from None
+            raise reason if reason.stuck is None else self._at_end() or reason from None
         except Unreached as reason:
             raise self._at_end() or reason from None
 

@@ -31,7 +31,8 @@ def own_limits(right: Equations) -> Iterator[tuple[Family, Floats]]:
     """Yield the limits that a scene has, and where their fits may begin: what none limits has no slope."""
     ends = bounds(right.loads)
     for number in numbers(right.loads) if right.loads is not None and ends else ():
-        if _moved(number, ends, number.put(2 * number.value)) == 2:
+        other = number.with_value(2 * number.value)
+        if other is not None and _moved(number, ends, other) == 2:
             yield number.family(right), number.value * np.array(_FACTORS)
 
 

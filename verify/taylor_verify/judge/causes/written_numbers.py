@@ -83,6 +83,13 @@ class Number:
         assert right.acting is not None
         return {"acting": right.acting.of(self.put(float(values[0])))}
 
+    def with_value(self, value: float) -> Loads | None:
+        """Return the loads with another value; None where it makes no text: an exponent often does not."""
+        with suppress(ValueError):
+            other = self.put(value)
+            return other if next(other.faults(), None) is None else None
+        return None
+
     def family(self, right: Equations) -> Family:
         """Return the fault of another value, or of another time of the one switch that it moves."""
         if (switch := self._switch(right)) is not None:
@@ -175,14 +182,15 @@ def numbers(loads: Loads) -> list[Number]:
     """Return the numbers of the loads that may be others, and the factors of the terms of sums."""
     sums = (*_of_terms(loads), *_of_drag(loads), *_of_gravity(loads))
     every = [*_of_places(loads), *_repeated(loads), *sums]
-    free = [_at_no_switch(loads, number) for number in every if _is_free(number)][:_MOST]
+    near = ((number, number.with_value(number.value * (1 + DIFFERENCE))) for number in every)
+    free = [_at_no_switch(loads, one, other) for one, other in near if other is not None][:_MOST]
     # Numbers that are dials go through one flow, one after the other.
     return sorted(free, key=lambda number: not number.keys)
 
 
-def _at_no_switch(loads: Loads, number: Number) -> Number:
-    """Return a number without its dials if it moves a switch."""
-    moved = number.put(number.value * (1 + DIFFERENCE)).switches if loads.switches else ()
+def _at_no_switch(loads: Loads, number: Number, near: Loads) -> Number:
+    """Return a number without its dials if it moves a switch, as ``near`` it the loads have others."""
+    moved = near.switches if loads.switches else ()
     return number if moved == loads.switches or not moved else replace(number, keys=())
 
 
@@ -196,7 +204,7 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
         for factor in _ANGLES if number.is_angle else ():
             changes = number.changes(right, np.array([factor * number.value]))
             yield fault(f"{number.name} {_EXCHANGED}", KIND, changes)
-        if number.name in names and (other := _of_other_sign(number)) is not None:
+        if number.name in names and (other := number.with_value(-number.value)) is not None:
             yield fault(f"{number.name} with the other sign", KIND, {"acting": acting.of(other)})
         if (missed := _missed(loads, number)) is not None:
             time = right.start + float(missed[0])
@@ -214,32 +222,14 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
             yield fault(f"table {name} is {kind}, where the scene has {table.kind}", KIND, changes)
 
 
-def _of_other_sign(number: Number) -> Loads | None:
-    with suppress(ValueError):
-        other = number.put(-number.value)
-        return other if next(other.faults(), None) is None else None
-    return None
-
-
 def _missed(loads: Loads, number: Number) -> tuple[Fraction, Loads] | None:
     """Return the switch whose time a number is, and the loads without it: it comes after all runs."""
-    if not loads.switches:
+    if not loads.switches or (other := number.with_value(_NEVER * number.value)) is None:
         return None
-    with suppress(ValueError):
-        other = number.put(_NEVER * number.value)
-        missed = set(loads.switches).difference(other.switches)
-        if len(missed) == 1 and len(other.switches) == len(loads.switches):
-            return missed.pop(), other
+    missed = set(loads.switches).difference(other.switches)
+    if len(missed) == 1 and len(other.switches) == len(loads.switches):
+        return missed.pop(), other
     return None
-
-
-def _is_free(number: Number) -> bool:
-    """Return True if the number may have another value: an exponent often may not."""
-    try:
-        other = number.put(number.value * (1 + DIFFERENCE))
-        return next(other.faults(), None) is None
-    except ValueError:
-        return False
 
 
 def _of_places(loads: Loads) -> Iterator[Number]:

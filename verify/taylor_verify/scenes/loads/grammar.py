@@ -52,7 +52,7 @@ class Fault(NamedTuple):
     got: str
 
 
-class Unread(Exception):
+class Unread(ValueError):
     """A text, or a name that leads to one, that has faults; they are noted, those of a text said."""
 
 

@@ -11,11 +11,10 @@ from typing import Final, NamedTuple
 
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
-from taylor_verify.scenes.loads.grammar import Fault, Unread
+from taylor_verify.scenes.loads.grammar import Fault
 from taylor_verify.scenes.loads.piece import Piece, PieceReader
 from taylor_verify.scenes.loads.rounded_steps import finished
 from taylor_verify.scenes.loads.states import Continuous, Held, Instant, State, instants
-from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.loads.tables import Table
 from taylor_verify.scenes.loads.vocabulary import (
     CENTRE,
@@ -92,10 +91,7 @@ class Loads:
         rounded = replace(
             self, rung=rung, states=tuple(state.on_rung(rung) for state in self.states)
         )
-        try:
-            _ = rounded.switches
-        except (NoStep, Unread) as fault:
-            raise ValueError(str(fault)) from None
+        _ = rounded.switches
         return rounded
 
     def piece(self, time: Fraction, is_later: bool = True) -> Piece:
