@@ -249,3 +249,29 @@ def test_a_momentum_in_space_under_a_moment_is_named(tmp_path: Path) -> None:
         "momentum with the moment of the step turned by q + h q omega / 2 at its begin, h = 0.01"
     )
     assert words in names
+
+
+WEIGHT, POINT = np.array([0, 0, -3.0]), np.array([0.1, -0.05, 0.3])
+HANGING = RIGID.replace(
+    "[initial]", f"weight = {{ force = {WEIGHT.tolist()}, at = {POINT.tolist()} }}\n[initial]"
+)
+
+
+@pytest.mark.parametrize(("ahead", "is_named"), [(0.5, True), (0.4, False)])
+def test_a_leapfrog_whose_loads_read_the_attitude_is_named(
+    ahead: float, is_named: bool, tmp_path: Path
+) -> None:
+    """The turn is by the rate after half a kick; one after two fifths of it has not this name."""
+
+    def kicked(w: Array, q: Array, h: float) -> Array:
+        moment = np.cross(POINT, matrix(q).T @ WEIGHT)
+        return np.asarray(w + h * (spin(w) + np.linalg.solve(TENSOR, moment)))
+
+    def leap(z: Array, h: float) -> Array:
+        w = kicked(z[:3], z[3:], ahead * h)
+        turn = Rotation.from_quat(z[[4, 5, 6, 3]]) * Rotation.from_rotvec(h * w)
+        q = turn.as_quat()[[3, 0, 1, 2]]
+        return np.concatenate([kicked(w, q, (1 - ahead) * h), q])
+
+    words = "leapfrog, attitude turned by the rate in the middle of the step, h = 0.025"
+    assert (words in titles(tmp_path, HANGING, rigid(leap, 4))) == is_named

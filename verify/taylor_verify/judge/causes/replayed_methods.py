@@ -252,6 +252,8 @@ UPDATES: Final[Mapping[str, _Update]] = {
 }
 OF_SECOND_ORDER: Final = "turned by the mean of the rates of a step"
 
+_IN_THE_MIDDLE: Final = "turned by the rate in the middle of the step"
+
 # The first-order updates of the attitude by which loads that read it differ.
 _WITH_EULER: Final = (
     "turned by the rate at the begin of the step",
@@ -261,22 +263,50 @@ _WITH_EULER: Final = (
 
 
 def with_updates(n: int) -> Iterator[tuple[str, Method]]:
-    """Yield explicit Euler with other updates of the attitude, for states of n velocities and q."""
+    """Yield methods with updates of the attitude of their own, for states of n velocities and q."""
     euler = METHODS["explicit Euler"]
     for name in _WITH_EULER:
         step = partial(_updated, euler.step, UPDATES[name], n)
         yield f"explicit Euler, attitude {name}", Method(1, step)
+    # Explicit halves of the gyroscopic term are of first order.
+    yield f"leapfrog, attitude {_IN_THE_MIDDLE}", Method(1, partial(_leapfrog, n))
+    midpoint = partial(_midpoint_turned, n)
+    yield f"implicit midpoint, attitude {_IN_THE_MIDDLE}", Method(2, midpoint, _EVALUATIONS)
+
+
+def _leapfrog(n: int, equations: Equations, time: Floats, z: Floats, h: Floats) -> Floats:
+    """Return z after half a step of v, a turn by its omega, and the other half."""
+    z = z.copy()
+    z[:, :n] += h / 2 * equations.rates(time, z)[:, :n]
+    z[:, n : n + 4] = _turned(z[:, n : n + 4], _omega(equations, z[:, :n]), h)
+    z[:, :n] += h / 2 * equations.rates(time + h, z)[:, :n]
+    return z
+
+
+def _midpoint_turned(n: int, equations: Equations, time: Floats, z: Floats, h: Floats) -> Floats:
+    """Return z after the step by the mean of v before and after, which turns the attitude as well."""
+    q, after = z[:, n : n + 4], z
+    for _ in range(_ITERATIONS):
+        before, middle = after, (z + after) / 2
+        omega = _omega(equations, middle[:, :n])
+        middle[:, n : n + 4] = _turned(q, omega, h / 2)
+        after = z + h * equations.rates(time + h / 2, middle)
+        after[:, n : n + 4] = _turned(q, omega, h)
+        if np.max(np.abs(after - before)) < _SETTLED * np.max(np.abs(z)):
+            break
+    return after
+
+
+def _omega(equations: Equations, v: Floats) -> Floats:
+    return (equations.inverse @ v if equations.has_momenta else v)[:, -3:]
 
 
 def _updated(
     step: _Step, update: _Update, n: int, equations: Equations, time: Floats, z: Floats, h: Floats
 ) -> Floats:
     after = step(equations, time, z, h)
-    before, then = (
-        (equations.inverse @ each if equations.has_momenta else each)
-        for each in (z[:, :n], after[:, :n])
-    )
-    after[:, n : n + 4] = update(z[:, n : n + 4], before[:, -3:], then[:, -3:], h)
+    before, then = (_omega(equations, each[:, :n]) for each in (z, after))
+    after[:, n : n + 4] = update(z[:, n : n + 4], before, then, h)
     return after
 
 
