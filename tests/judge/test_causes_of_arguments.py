@@ -349,6 +349,7 @@ def sentences(changed: str) -> list[str]:
         ("t-3", "t-3.73", "switch at t = 3 comes at t = 3.73"),
         ("t-1", "t-0.5", "switch at t = 1 comes at t = 0.5"),
         ("step(t-", "step(t-0.3-", "loads late = 0.3"),
+        ("step(t-", "step(t+0.3-", "loads early = 0.3"),
     ],
 )
 def test_a_load_that_begins_or_ends_at_another_time_is_named(

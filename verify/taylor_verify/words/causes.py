@@ -79,6 +79,8 @@ def with_numbers(
         return "clock = 0: the motion stands still"
     if is_clock and values[0] > 0:
         return f"clock = {values[0]:.6g}: {_pace(values[0])}"
+    if name == "loads late" and values[0] < 0:
+        return f"loads early = {-values[0]:.6g}"
     if name.startswith("switch at "):
         return f"{name} comes at t = {values[0]:.6g}"
     if labels and name.startswith("factor of ") and (words := _of_term(values[0])):

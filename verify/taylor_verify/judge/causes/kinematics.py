@@ -226,7 +226,7 @@ def _updates(turns: _Turns, method: Steps | None) -> Iterator[Candidate]:
 
         if method is None and not _is_along(exact, exact - error(_FEW)):
             continue
-        order = 2 if name == OF_SECOND_ORDER else 1
+        order = 2 if name in OF_SECOND_ORDER else 1
         steps = method.count if method else _steps(order, partial(_apart, error, exact), turns.size)
         some = {steps} if method else {max(1, steps - 1), steps, steps + 1}
         best = min(some, key=lambda k: _size(error(k)))

@@ -241,6 +241,9 @@ UPDATES: Final[Mapping[str, _Update]] = {
     ),
     "q + h q omega / 2 with the rate at the begin": lambda q, w, after, h: q + h * _slope(q, w),
     "q + h q omega / 2 with the rate at the end": lambda q, w, after, h: q + h * _slope(q, after),
+    "q + h q omega / 2 with the mean of the rates": lambda q, w, after, h: (
+        q + h * _slope(q, (w + after) / 2)
+    ),
     "quaternion updated in place": lambda q, w, after, h: _in_turn(q, w, 1.0, h / 2),
     "quaternion updated in place, its last component first": lambda q, w, after, h: _in_turn(
         q, w, 1.0, h / 2, range(3, -1, -1)
@@ -250,7 +253,7 @@ UPDATES: Final[Mapping[str, _Update]] = {
     ),
     "quaternion turned by the rate at the begin of the step, updated in place": _turned_in_place,
 }
-OF_SECOND_ORDER: Final = "turned by the mean of the rates of a step"
+OF_SECOND_ORDER: Final = frozenset(name for name in UPDATES if "mean of the rates" in name)
 
 _IN_THE_MIDDLE: Final = "turned by the rate in the middle of the step"
 
