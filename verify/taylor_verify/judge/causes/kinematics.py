@@ -164,7 +164,7 @@ def _by_space(right: Equations, arcs: Arcs) -> Floats:
     begin = np.concatenate([own[:, :n], true, own[:, n:]], axis=1)
 
     def rates(time: Floats, z: Floats) -> Floats:
-        in_space = to_space(rotations(z[:, n : n + 4]), _omega(right, z[:, :n]))
+        in_space = to_space(rotations(z[:, n : n + 4]), right.velocities(time, z)[:, -3:])
         turned = AFTER @ outer(z[:, n + 4 :], in_space)
         return np.concatenate([right.rates(time, z[:, : n + 4]), turned], axis=1)
 
@@ -187,7 +187,7 @@ def _turned_by_angles(right: Equations, answer: Answer, _: Changes) -> Motion:
 
     def rates(time: Floats, z: Floats) -> Floats:
         v = z[:, :n]
-        return np.concatenate([right.rates(time, v), _omega(right, v)], axis=1)
+        return np.concatenate([right.rates(time, v), right.velocities(time, v)[:, -3:]], axis=1)
 
     ends = flow(rates, begin[None], arcs.since, arcs.spans, arcs.steps)[0, n:].T
     assert answer.start.q is not None
@@ -282,11 +282,7 @@ def _rates(right: Equations, arcs: Arcs, method: Steps | None, steps: int) -> li
         spans, since = np.outer(np.arange(1, steps + 1), h).ravel(), np.tile(arcs.since, steps)
         ends = moved(answer, right, np.tile(v, steps), since, spans, arcs.steps)
         rows += np.split(ends, steps, axis=2)
-    return [_omega(right, each) for each in rows]
-
-
-def _omega(right: Equations, v: Floats) -> Floats:
-    return (right.inverse @ v if right.has_momenta else v)[:, -3:]
+    return [right.velocities(arcs.since + k * h, each)[:, -3:] for k, each in enumerate(rows)]
 
 
 def _maps(right: Equations, update: Any, steps: int, method: Steps | None, arcs: Arcs) -> Floats:

@@ -281,7 +281,7 @@ def _leapfrog(n: int, equations: Equations, time: Floats, z: Floats, h: Floats) 
     """Return z after half a step of v, a turn by its omega, and the other half."""
     z = z.copy()
     z[:, :n] += h / 2 * equations.rates(time, z)[:, :n]
-    z[:, n : n + 4] = _turned(z[:, n : n + 4], _omega(equations, z[:, :n]), h)
+    z[:, n : n + 4] = _turned(z[:, n : n + 4], equations.velocities(time, z)[:, -3:], h)
     z[:, :n] += h / 2 * equations.rates(time + h, z)[:, :n]
     return z
 
@@ -291,7 +291,7 @@ def _midpoint_turned(n: int, equations: Equations, time: Floats, z: Floats, h: F
     q, after = z[:, n : n + 4], z
     for _ in range(_ITERATIONS):
         before, middle = after, (z + after) / 2
-        omega = _omega(equations, middle[:, :n])
+        omega = equations.velocities(time + h / 2, middle)[:, -3:]
         middle[:, n : n + 4] = _turned(q, omega, h / 2)
         after = z + h * equations.rates(time + h / 2, middle)
         after[:, n : n + 4] = _turned(q, omega, h)
@@ -300,16 +300,12 @@ def _midpoint_turned(n: int, equations: Equations, time: Floats, z: Floats, h: F
     return after
 
 
-def _omega(equations: Equations, v: Floats) -> Floats:
-    return (equations.inverse @ v if equations.has_momenta else v)[:, -3:]
-
-
 def _updated(
     step: _Step, update: _Update, n: int, equations: Equations, time: Floats, z: Floats, h: Floats
 ) -> Floats:
     after = step(equations, time, z, h)
-    before, then = (_omega(equations, each[:, :n]) for each in (z, after))
-    after[:, n : n + 4] = update(z[:, n : n + 4], before, then, h)
+    before, then = equations.velocities(time, z), equations.velocities(time + h, after)
+    after[:, n : n + 4] = update(z[:, n : n + 4], before[:, -3:], then[:, -3:], h)
     return after
 
 

@@ -189,7 +189,7 @@ def numbers(loads: Loads) -> list[Number]:
 
 
 def _at_no_switch(loads: Loads, number: Number, near: Loads) -> Number:
-    """Return a number without its dials if it moves a switch, as ``near`` it the loads have others."""
+    """Return a number without its dials if ``near``, the loads with a value near to it, move a switch."""
     moved = near.switches if loads.switches else ()
     return number if moved == loads.switches or not moved else replace(number, keys=())
 
