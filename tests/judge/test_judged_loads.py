@@ -11,10 +11,13 @@ from fractions import Fraction
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
+from builders.drawn_loads import drawn
 from builders.integrators import step
+from builders.scenes import sampled
 from builders.trajectories import write_csv
 from builders.turns import by_turns
 from builders.written_loads import Evaluated, end_of, euler, kirchhoff, value
@@ -25,6 +28,7 @@ from taylor_verify.judge.causes.likely import NOT_LOOKED_FOR
 from taylor_verify.judge.files.judgement import NO_CONVENTIONS
 from taylor_verify.judge.load_notes import NOTHING_CONSERVED
 from taylor_verify.records.status import Status
+from taylor_verify.run import run
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.scene import Scene
 
@@ -204,6 +208,17 @@ def test_a_wrong_load_fails_the_state_and_the_gate_that_names_it(twin: str, tmp_
     assert named <= failed
     assert "H_along" not in failed
     assert causes == CAUSES.get(twin, [])
+
+
+# Other numbers in these make a logarithm of less than zero, a power of too many digits, and the like.
+NO_NUMBERS = [1039, 1046, 1055, 2050]
+
+
+@pytest.mark.parametrize("seed", by_turns([*NO_NUMBERS, *range(12)], of=20))
+def test_a_wrong_answer_to_drawn_loads_fails(seed: int) -> None:
+    """No other number, sign or limit that is tried in the texts of a scene ends the search for causes."""
+    scene = sampled(drawn(Random(seed), with_states=seed % 3 == 0).scene, 21)
+    assert not run(scene, "scipy:RK45").passed
 
 
 def test_work_and_impulse_without_arcs_are_those_of_the_exact_motion(tmp_path: Path) -> None:

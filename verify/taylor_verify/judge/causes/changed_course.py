@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from math import nan
 from typing import Final
 
 import numpy as np
@@ -228,8 +230,12 @@ def _taken(equations: Equations, instant: Instant, z: Floats, values: Floats) ->
     assert equations.acting is not None
     nu = equations.velocities(np.array([float(instant.time)]), z)
     states = equations.states_of_texts(z, nu)[:, 0]
-    taken = [equations.acting.taken(instant, *pair) for pair in zip(states, values, strict=True)]
-    return np.array(taken)
+    taken = np.full((len(states), values.shape[-1]), nan)
+    for k, pair in enumerate(zip(states, values, strict=True)):
+        # What floats refuse is no number.
+        with suppress(ArithmeticError, ValueError):
+            taken[k] = equations.acting.taken(instant, *pair)
+    return taken
 
 
 def _motion(answer: Answer, rows: Floats) -> Motion:

@@ -14,15 +14,25 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from math import nan
 from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.basis import EPSILON, Basis, basis, coriolis_of
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.many_frames import (
+    AFTER,
+    BEFORE,
+    outer,
+    rotations,
+    to_body,
+    to_space,
+)
 from taylor_verify.models.acting import Acting
-from taylor_verify.models.frame import attitude_rate, rotation
+from taylor_verify.scenes.loads.grammar import Unread
 from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.steps import NoStep
 
 Changes = Mapping[str, Any]
 # The rate of the centre by R, the linear velocity and the current.
@@ -38,6 +48,8 @@ _AXES: Final = (
 _TEXTS: Final = 55.0
 _STEP: Final = 2.5
 _TEXTS_OF_ONE: Final = 0.2
+# Another number in a text may make a constant that is none: log(0.05 - 1).
+_NO_NUMBERS: Final = (NoStep, Unread)
 _FRAMED: Final = frozenset({"frame", "turned loads"})
 
 
@@ -236,7 +248,9 @@ class Equations:
         once = 18.0 + 12.0 * (components > self.size) + 25.0 * self._reads_frame
         each = (0.016 if self._reads_frame else 0.008) * components
         if self.acting is not None:
-            steps = len(self.acting.written.piece(Fraction(0)).steps)
+            steps = 0
+            with suppress(*_NO_NUMBERS):
+                steps = len(self.acting.written.piece(Fraction(0)).steps)
             once += (_TEXTS + _STEP * steps) * (1 + bool(self.own))
             each += _TEXTS_OF_ONE
         return once + each * states
@@ -274,7 +288,7 @@ class Equations:
                 return R.reshape(len(R), 9, -1)[:, columns]
             case "loads":
                 return (to_space(R, loads) if self.in_world else loads)[:, columns]
-        return _to_body(R, loads)[:, columns]
+        return to_body(R, loads)[:, columns]
 
     @cached_property
     def _factors_of_products(self) -> Floats:
@@ -308,7 +322,10 @@ class Equations:
             with suppress(ArithmeticError, ValueError):
                 values = read(when[0, 0], state[0, 0], *inputs)
         if values is None:
-            values = read(when, state, *([] if taken is None else [taken]))
+            count = {"rates": self.own, "rotor": 3}.get(what, self.size)
+            values = np.full((*when.shape, count), nan)
+            with suppress(*_NO_NUMBERS):
+                values = read(when, state, *([] if taken is None else [taken]))
         return np.asarray(values).reshape(*when.shape, -1).transpose(0, 2, 1)
 
     def _times_of_texts(self, time: Floats) -> Floats:
@@ -337,7 +354,7 @@ class Equations:
     def _turning(self) -> Floats:
         """The factors of q_i W_j in the rates of q, (..., 4, 12)."""
         before, after = np.moveaxis(np.array([0, 1]) if self.turns is None else self.turns, -1, 0)
-        both = before[..., None, None] * _BEFORE + after[..., None, None] * AFTER
+        both = before[..., None, None] * BEFORE + after[..., None, None] * AFTER
         return np.asarray(both)
 
 
@@ -346,48 +363,6 @@ def _spread(array: Floats, shape: tuple[int, ...]) -> Floats:
     return array if array.shape == shape else np.broadcast_to(array, shape)
 
 
-def outer(p: Floats, q: Floats) -> Floats:
-    """Return the products p_i q_j of the components, (parameters, products, arcs)."""
-    return np.asarray(np.repeat(p, q.shape[1], axis=1) * np.tile(q, (1, p.shape[1], 1)))
-
-
-def _turning_factors(unit: Floats, axes: Floats) -> Floats:
-    """Return the factors of q_i W_j in q' = q W / 2, for these unit vectors."""
-    return np.array([attitude_rate(list(q), list(W)) for q in unit for W in axes], dtype=float).T
-
-
-def _entries(q: Floats) -> Floats:
-    return np.ravel(rotation(list(q)))
-
-
-AFTER: Final = _turning_factors(np.eye(4), np.eye(3))
-# W q is the conjugate of q* W*, and W* = -W.
-_CONJUGATE: Final = np.diag([1.0, -1, -1, -1])
-_BEFORE: Final = _CONJUGATE @ _turning_factors(_CONJUGATE, -np.eye(3))
-# The factors of q_i q_k in the entries of R(q), which are quadratic forms.
-_ROTATION: Final = np.transpose(
-    [(_entries(e + d) - _entries(e - d)) / 4 for e in np.eye(4) for d in np.eye(4)]
-)
-
-
 def _number(value: Any) -> Floats:
     """Return a number, or one for each parameter set, with the axes of an array of states."""
     return np.asarray(value, dtype=float).reshape(-1, 1, 1)
-
-
-def rotations(q: Floats) -> Floats:
-    """Return R(q) of quaternions of any length, (parameters, 3, 3, arcs)."""
-    R = _ROTATION @ outer(q, q) / np.sum(q * q, axis=1, keepdims=True)
-    return np.asarray(R.reshape(len(q), 3, 3, -1))
-
-
-def to_space(R: Floats, vectors: Floats) -> Floats:
-    """Return R v for vectors of three components."""
-    return np.asarray(np.einsum("pika,pka->pia", R, vectors))
-
-
-def _to_body(R: Floats, vectors: Floats) -> Floats:
-    """Return R^T v for every vector of three components."""
-    threes = vectors.reshape(len(vectors), -1, 3, vectors.shape[2])
-    turned = np.einsum("pkia,pnka->pnia", R, threes)
-    return np.asarray(turned.reshape(len(turned), vectors.shape[1], -1))

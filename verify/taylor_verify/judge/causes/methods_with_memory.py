@@ -12,9 +12,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.changed_equations import Equations, rotations, to_space
+from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.many_frames import rotations, to_space
 from taylor_verify.judge.causes.proof import LEAVES
 from taylor_verify.judge.causes.replayed_methods import (
     METHODS,

@@ -10,9 +10,10 @@ import numpy as np
 
 from taylor_verify.judge.causes.arcs import moved, row_to_row
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.changed_equations import Equations, Path, to_space
+from taylor_verify.judge.causes.changed_equations import Equations, Path
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.many_frames import to_space
 from taylor_verify.words.causes import steps_in_words
 
 # What the velocities and attitudes are wrong by is nothing beside the path.

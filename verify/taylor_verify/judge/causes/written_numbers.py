@@ -202,8 +202,8 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
     names = {name for name, _ in loads.definitions}
     for number in numbers(loads):
         for factor in _ANGLES if number.is_angle else ():
-            changes = number.changes(right, np.array([factor * number.value]))
-            yield fault(f"{number.name} {_EXCHANGED}", KIND, changes)
+            if (other := number.with_value(factor * number.value)) is not None:
+                yield fault(f"{number.name} {_EXCHANGED}", KIND, {"acting": acting.of(other)})
         if number.name in names and (other := number.with_value(-number.value)) is not None:
             yield fault(f"{number.name} with the other sign", KIND, {"acting": acting.of(other)})
         if (missed := _missed(loads, number)) is not None:
