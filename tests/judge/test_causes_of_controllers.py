@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable
+from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from builders.integrators import turned
 from builders.trajectories import named, write_csv
 from builders.turns import by_turns
-from builders.wrong_dynamics import explained_motion
+from builders.written_loads import Evaluated, instants
+from builders.wrong_dynamics import Array, explained_motion
 
 from taylor_verify import check, exact
 from taylor_verify.judge.causes.float_answer import Motion
@@ -316,3 +320,67 @@ def test_rows_on_instants_that_no_double_is_have_a_floor(tmp_path: Path) -> None
     judged = check(scene(), str(path), tolerance=1e-6)
     assert {verdict.verdict for verdict in judged.verdicts} == {Status.PASS}
     assert all(np.isfinite(verdict.attainable or np.nan) for verdict in judged.verdicts)
+
+
+INTEGRAL = BODY.replace(
+    CONTINUOUS, '[states]\nj = { start = [0, 0, 0], rate = ["w1", "w2 - 0.1*j1", "q3"] }\n'
+).replace('"a1", "a2", "a3"', '"-kp*w1 - 0.3*j1", "-kp*w2 - 0.2*j2", "-0.4*q3 - 0.1*j3"')
+Step = Callable[[Callable[[float, Array], Array], float, Array, float], Array]
+
+
+def _heun(f: Callable[[float, Array], Array], t: float, y: Array, h: float) -> Array:
+    first = f(t, y)
+    return y + h / 2 * (first + f(t + h, y + h * first))
+
+
+def _euler_with_turn(f: Callable[[float, Array], Array], t: float, y: Array, h: float) -> Array:
+    after = y + h * f(t, y)
+    after[3:7] = turned(y[3:7], h * after[:3])
+    return after
+
+
+def in_steps(text: str, step: Step, parts: list[float]) -> dict[str, Any]:
+    """Return the answer in so many steps between rows and instants, each so large a part of all."""
+    own = Evaluated(scene(text))
+    y, now, rows = np.array(own.start(), float), Fraction(0), []
+
+    def rates(t: float, y: Array) -> Array:
+        return np.array(own.rates(t, list(y)), float)
+
+    own.take(0.0, Fraction(0), list(y))
+    times = list(scene(text).clock.instants)
+    for time in sorted({*times, *instants(scene(text), times[-1])}):
+        begin = float(now)
+        for part in parts if time > now else []:
+            y = step(rates, begin, y, part * float(time - now))
+            y[3:7] /= np.linalg.norm(y[3:7])
+            begin += part * float(time - now)
+        if time in instants(scene(text), times[-1]):
+            own.take(float(time), time, list(y))
+        now = time
+        rows += [y[:7]] if time in times else []
+    columns = zip(("w1", "w2", "w3", "q0", "q1", "q2", "q3"), np.transpose(rows), strict=True)
+    return {"t": [float(t) for t in times], **dict(columns)}
+
+
+@pytest.mark.parametrize(
+    ("text", "step", "parts", "name"),
+    by_turns(
+        [
+            (INTEGRAL, _heun, [1 / 3] * 3, "truncation of order 2: Heun, h = 0.0166667"),
+            (BODY, _heun, [1.0], "truncation of order 2: Heun, h = 0.05"),
+            (INTEGRAL, _euler_with_turn, [1 / 2] * 2, "turned by the rate at the end of the step"),
+            (BODY, _euler_with_turn, [1 / 2] * 2, "turned by the rate at the end of the step"),
+            (INTEGRAL, _heun, [2 / 5, 3 / 5], None),
+            (BODY, _heun, [2 / 5, 3 / 5], None),
+        ],
+        3,
+    ),
+)
+def test_coarse_steps_of_own_states_are_named(
+    text: str, step: Step, parts: list[float], name: str | None
+) -> None:
+    """The steps are replayed from the start with all states; unequal ones have no name."""
+    causes = check(scene(text), in_steps(text, step, parts)).causes
+    assert len(causes) == (name is not None)
+    assert not name or name in causes[0].sentence

@@ -25,6 +25,14 @@ Floats = np.ndarray[Any, Any]
 
 _VELOCITIES: Final = ("u1", "u2", "u3", "w1", "w2", "w3")
 _FRAME: Final = frozenset((*ROTATION, *QUATERNION))
+# From the q of a state, whose length a method may let drift, the q that texts read, and R.
+Frame = Callable[[Sequence[Any]], tuple[Sequence[Any], Sequence[Sequence[Any]]]]
+
+
+def of_unit_length(q: Sequence[Any]) -> tuple[Sequence[Any], Sequence[Sequence[Any]]]:
+    """Return q of unit length, and its R."""
+    size = sum(e * e for e in q)
+    return [e / size**0.5 for e in q], [[e / size for e in row] for row in rotation(q)]
 
 
 class Acting:
@@ -34,22 +42,27 @@ class Acting:
     ``state`` omega, or x and y; then q0..q3 and the centre where a text reads them; then the continuous
     components of the scene's own states. ``held`` are the held ones. All may have more axes in front, the
     same for all. Raises ValueError for a state that is too short, and for held values that are missing.
-    ``written`` are the loads as texts.
+    ``written`` are the loads as texts; ``frame`` is how they read the attitude.
     """
 
-    def __init__(self, scene: Scene, loads: Loads) -> None:
+    def __init__(self, scene: Scene, loads: Loads, frame: Frame = of_unit_length) -> None:
         self._scene, self.written, self._start = scene, loads, scene.clock.start
+        self._frame = frame
         self._is_euler = scene.model == "euler"
         self._matrix = np.array(scene.body.energy_matrix, dtype=float)
         self._codes: dict[tuple[str, Fraction | None, bool], _Code] = {}
 
     def of(self, loads: Loads) -> Acting:
         """Return other loads of the same scene."""
-        return Acting(self._scene, loads)
+        return Acting(self._scene, loads, self._frame)
+
+    def framed(self, frame: Frame) -> Acting:
+        """Return the same loads, which read the attitude in another way."""
+        return Acting(self._scene, self.written, frame)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Code that was made here is made again there.
-        return Acting, (self._scene, self.written)
+        return Acting, (self._scene, self.written, self._frame)
 
     def loads(self, t: Any, state: Any, held: Any = None) -> Floats:
         """Return the moment (..., 3), or force and couple in one array (..., 6)."""
@@ -169,10 +182,9 @@ class Acting:
             rows = velocity.tolist() if velocity.ndim == 1 else velocity
             inputs |= dict(zip(_VELOCITIES, rows, strict=True))
         if q and not names.isdisjoint(_FRAME):
-            size = sum(e * e for e in q)
-            R = rotation(q)
-            inputs |= {f"q{i}": e / size**0.5 for i, e in enumerate(q)}
-            inputs |= {f"r{i + 1}{j + 1}": R[i][j] / size for i in range(3) for j in range(3)}
+            q, R = self._frame(q)
+            inputs |= {f"q{i}": e for i, e in enumerate(q)}
+            inputs |= {f"r{i + 1}{j + 1}": R[i][j] for i in range(3) for j in range(3)}
         return inputs
 
 

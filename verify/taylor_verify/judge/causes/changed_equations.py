@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import nan
 from typing import Any, Final
 
@@ -29,7 +29,7 @@ from taylor_verify.judge.causes.many_frames import (
     to_body,
     to_space,
 )
-from taylor_verify.models.acting import Acting
+from taylor_verify.models.acting import Acting, Frame, of_unit_length
 from taylor_verify.scenes.loads.grammar import Unread
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.steps import NoStep
@@ -63,7 +63,7 @@ class Equations:
     omega'; ``clock`` multiplies all rates, and the time that texts read. A damped step of h takes the part
     ``loss`` h of the velocities. ``in_world`` takes v for components in space axes, into which the loads
     are turned. ``added`` is the part of ``mass`` that the scene calls added mass. ``path`` is another rate
-    of the centre.
+    of the centre; ``frame`` is how q is read, whose length may drift.
     """
 
     mass: Floats
@@ -84,6 +84,7 @@ class Equations:
     in_world: bool = False
     added: Floats | None = None
     path: Path | None = None
+    frame: Frame = of_unit_length
 
     @property
     def size(self) -> int:
@@ -145,6 +146,11 @@ class Equations:
     def changed(self, changes: Changes) -> Equations:
         """Return the equations with one set of other parameters."""
         return replace(self, **changes)
+
+    def framed(self, frame: Frame) -> Equations:
+        """Return the equations that read q in another way."""
+        acting = self.acting and _framed(self.acting, frame)
+        return replace(self, acting=acting, frame=frame)
 
     def copies(self, sets: Sequence[Changes]) -> Equations:
         """Return equations with an axis of parameter sets, if there are several.
@@ -212,7 +218,7 @@ class Equations:
         R: Any = None
         has_centre = z.shape[1] > n + 4 + self.own
         if has_centre or self._reads_frame:
-            R = rotations(z[:, n : n + 4])
+            R = rotations(z[:, n : n + 4], self.frame)
         moving = self._slopes @ self._expressions(time, z, nu, R)
         if self.loads is not None and self.loads.rotor:
             moving = moving + np.cross(self.wheels(time, z), nu, axis=1)
@@ -356,6 +362,11 @@ class Equations:
         before, after = np.moveaxis(np.array([0, 1]) if self.turns is None else self.turns, -1, 0)
         both = before[..., None, None] * BEFORE + after[..., None, None] * AFTER
         return np.asarray(both)
+
+
+@lru_cache(maxsize=8)
+def _framed(acting: Acting, frame: Frame) -> Acting:
+    return acting.framed(frame)
 
 
 def _spread(array: Floats, shape: tuple[int, ...]) -> Floats:

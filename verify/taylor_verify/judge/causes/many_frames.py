@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.models.acting import Frame, of_unit_length
 from taylor_verify.models.frame import attitude_rate, rotation
 
 
@@ -37,8 +38,10 @@ _ROTATION: Final = np.transpose(
 )
 
 
-def rotations(q: Floats) -> Floats:
+def rotations(q: Floats, frame: Frame = of_unit_length) -> Floats:
     """Return R(q) of quaternions of any length, (parameters, 3, 3, arcs)."""
+    if frame is not of_unit_length:
+        return np.transpose(frame(list(q.swapaxes(0, 1)))[1], (2, 0, 1, 3))
     R = _ROTATION @ outer(q, q) / np.sum(q * q, axis=1, keepdims=True)
     return np.asarray(R.reshape(len(q), 3, 3, -1))
 

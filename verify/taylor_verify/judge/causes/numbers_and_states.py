@@ -23,6 +23,7 @@ from taylor_verify.judge.causes.misread_states import (
     phase_of_sampling,
 )
 from taylor_verify.judge.causes.other_bodies import families_of_bodies, faults_of_bodies
+from taylor_verify.judge.causes.steps_of_states import steps_of_states
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms, loads_late
 from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers
 
@@ -40,6 +41,7 @@ def in_states(answer: Answer) -> Cause | None:
     faults = [*faults_of_states(right), *faults_of_terms(right), *faults_of_bodies(right)]
     faults += faults_of_texts(right)
     cause = search.cause([*search.without_numbers(faults)])
+    cause = cause or search.cause(steps_of_states(answer, courses))
     with suppress(Spent):
         cause = cause or search.cause([*search.fitted(_written(answer))])
         sizes = Sizes.of(answer)

@@ -7,7 +7,7 @@ each arc. An attitude's update takes q, the angular velocities at both ends of t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final
 
@@ -15,7 +15,9 @@ import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.models.acting import Frame
 from taylor_verify.models.frame import attitude_rate
+from taylor_verify.models.frame import rotation as matrix
 from taylor_verify.numbers import rotation
 
 _Step = Callable[[Equations, Floats, Floats, Floats], Floats]
@@ -36,7 +38,8 @@ class Method:
 
     One that ``has_frame`` leads the attitude and the centre as well. One with a ``run`` (answer, equations,
     h, components) needs more than the state: its step is nearly right, and the run is the motion.
-    ``held`` are loads that are taken once in a step, where that is all of the method.
+    ``held`` are loads that are taken once in a step, where that is all of the method; ``frame`` is how its
+    stages read q.
     """
 
     order: int
@@ -45,6 +48,7 @@ class Method:
     has_frame: bool = False
     run: Any = None
     held: Any = None
+    frame: Frame | None = None
 
     @property
     def is_dear(self) -> bool:
@@ -267,14 +271,43 @@ _WITH_EULER: Final = (
 
 def with_updates(n: int) -> Iterator[tuple[str, Method]]:
     """Yield methods with updates of the attitude of their own, for states of n velocities and q."""
-    euler = METHODS["explicit Euler"]
-    for name in _WITH_EULER:
-        step = partial(_updated, euler.step, UPDATES[name], n)
-        yield f"explicit Euler, attitude {name}", Method(1, step)
+    yield from explicit_with_updates(n)
     # Explicit halves of the gyroscopic term are of first order.
     yield f"leapfrog, attitude {_IN_THE_MIDDLE}", Method(1, partial(_leapfrog, n))
     midpoint = partial(_midpoint_turned, n)
     yield f"implicit midpoint, attitude {_IN_THE_MIDDLE}", Method(2, midpoint, _EVALUATIONS)
+
+
+def explicit_with_updates(n: int) -> Iterator[tuple[str, Method]]:
+    """Yield explicit Euler's method with updates of the attitude of their own."""
+    euler = METHODS["explicit Euler"]
+    for name in _WITH_EULER:
+        step = partial(_updated, euler.step, UPDATES[name], n)
+        yield f"explicit Euler, attitude {name}", Method(1, step)
+
+
+def _as_it_is(q: Sequence[Any]) -> tuple[Sequence[Any], Sequence[Sequence[Any]]]:
+    return q, matrix(q)
+
+
+def _with_ones(q: Sequence[Any]) -> tuple[Sequence[Any], Sequence[Sequence[Any]]]:
+    """Return R with 1 - 2 (q2 q2 + q3 q3) and the like in its diagonal."""
+    rest, R = 1 - sum(e * e for e in q), matrix(q)
+    return q, [[e + rest * (i == k) for k, e in enumerate(row)] for i, row in enumerate(R)]
+
+
+_FRAMES: Final[Mapping[str, Frame]] = {
+    "whose stages read q as it is": _as_it_is,
+    "whose stages read q as it is, R with 1 - 2 (...) in its diagonal": _with_ones,
+}
+
+
+def with_frames() -> Iterator[tuple[str, Method]]:
+    """Yield methods of several stages, between which q is not of unit length, as loads may read it."""
+    for name, method in METHODS.items():
+        if method.has_frame and not method.is_dear:
+            for words, frame in _FRAMES.items():
+                yield f"{name} {words}", replace(method, frame=frame)
 
 
 def _leapfrog(n: int, equations: Equations, time: Floats, z: Floats, h: Floats) -> Floats:

@@ -28,6 +28,7 @@ from taylor_verify.judge.causes.replayed_methods import (
     OF_MOMENTUM,
     OF_PUSHED_MOMENTUM,
     Method,
+    with_frames,
     with_unit_attitude,
     with_updates,
 )
@@ -35,7 +36,7 @@ from taylor_verify.words.causes import steps_in_words
 
 # A replay leaves at most this part of the defects, or so many roundings; they are this many at least.
 LEAVES: Final = 0.02
-_ROUNDINGS: Final = 5.0
+ROUNDINGS: Final = 5.0
 # One that is only nearly right over an arc leaves more.
 _NEARLY: Final = 0.2
 _CLEAR: Final = 10.0
@@ -107,6 +108,8 @@ def replay(
     spans: Floats,
 ) -> Floats:
     """Return v after the spans, each in so many steps."""
+    if method.frame is not None:
+        equations = equations.framed(method.frame)
     h = spans / steps
     v = np.broadcast_to(v, (max(len(v), equations.sets), *v.shape[1:]))
     price = equations.price(v.shape[1], len(v) * v.shape[2])
@@ -133,10 +136,10 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     if answer.n == 3 and answer.right.has_loads:
         known |= OF_PUSHED_MOMENTUM
     if answer.right.coupled > answer.n:
-        known = {**METHODS, **dict(with_updates(answer.n))}
+        known = {**METHODS, **dict(with_updates(answer.n)), **dict(with_frames())}
     acting = answer.right.acting
     of_loads = [*replayed.steps(held_loads.methods(acting) if acting else {}, _ALONE)]
-    is_exact = any(steps.left < _ROUNDINGS * replayed.floor for steps in of_loads)
+    is_exact = any(steps.left < ROUNDINGS * replayed.floor for steps in of_loads)
     tried = [iter(of_loads), *[replayed.steps(known, _ALONE)] * (not is_exact)]
     if answer.count > 2 * FEW and not is_exact:
         # A method with memory has a first step of another kind.
@@ -147,10 +150,10 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
         tried += [] if beyond is None else [beyond.steps(more, _ALONE)]
     for steps in _each_best(chain(*tried)):
         near = LEAVES if steps.method.run is None else _NEARLY
-        if steps.left < max(near, _ROUNDINGS * replayed.floor):
+        if steps.left < max(near, ROUNDINGS * replayed.floor):
             h = steps.step(answer)
             changes = steps.method.held.changes(answer, h) if steps.method.held else {}
-            yield steps.candidate(_name(steps, answer), near, changes)
+            yield steps.candidate(name_of_steps(steps, answer), near, changes)
 
 
 def _clear(answer: Answer, stride: int) -> _Replays | None:
@@ -163,7 +166,7 @@ def _clear(answer: Answer, stride: int) -> _Replays | None:
     return None
 
 
-def _name(steps: Steps, answer: Answer) -> str:
+def name_of_steps(steps: Steps, answer: Answer) -> str:
     """Return the name of the steps of an answer."""
     long = steps.words(answer)
     if steps.method.held:
@@ -326,22 +329,24 @@ def moved_by(steps: Steps, h: float, answer: Answer, equations: Equations) -> Mo
     if steps.method.run is not None:
         motion: Motion = steps.method.run(answer, equations, h, components)
         return motion
-    return whole(_in_steps(answer, steps, h), equations, components)
+    return whole(with_steps(answer, steps.method, h), equations, components)
 
 
 def stepped(answer: Answer, steps: Steps) -> Answer:
     """Return the answer with arcs that are stepped from row to row."""
-    return _in_steps(answer, steps, steps.step(answer))
+    return with_steps(answer, steps.method, steps.step(answer))
 
 
-def _in_steps(answer: Answer, steps: Steps, h: float) -> Answer:
+def with_steps(answer: Answer, method: Method, h: float) -> Answer:
+    """Return the answer with arcs that are stepped by h, or a little less or more so that they end."""
+
     def ends(equations: Equations, begin: Floats, since: Floats, spans: Floats) -> Floats:
         counts = np.maximum(1, np.rint(np.abs(spans) / h)).astype(int)
         parts = []
         for count in np.unique(counts):
             some = counts == count
             own = begin[:, :, some], since[some], spans[some]
-            parts.append((some, replay(answer, steps.method, int(count), equations, *own)))
+            parts.append((some, replay(answer, method, int(count), equations, *own)))
         out = np.empty((*parts[0][1].shape[:2], len(spans)))
         for some, each in parts:
             out[:, :, some] = each

@@ -1,0 +1,102 @@
+"""Steps of a method through a scene with states of its own: replayed from the start; no row has them all.
+
+The error of short steps is fitted to that of the first wrong rows, in h^p; this gives the number of steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+from functools import cache, partial
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.budget import Spent
+from taylor_verify.judge.causes.candidate import Candidate
+from taylor_verify.judge.causes.changed_course import Courses, courses
+from taylor_verify.judge.causes.changed_equations import Equations
+from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.replayed_methods import (
+    METHODS,
+    Method,
+    explicit_with_updates,
+    with_frames,
+)
+from taylor_verify.judge.causes.replays import (
+    LEAVES,
+    ROUNDINGS,
+    Steps,
+    name_of_steps,
+    nearest_count,
+    with_steps,
+)
+
+# The steps from row to row by which the error of a method is measured, and what may be left to first order.
+_FINE: Final = 4
+_NEAR: Final = 0.6
+_MOST: Final = 100
+_EXACT: Final = 1e-6
+# The work that all methods may cost on the first wrong rows, and one that explains those on all rows.
+_TRIED: Final = 800_000.0
+_SETTLED: Final = 2_500_000.0
+
+
+def steps_of_states(answer: Answer, few: Courses) -> Iterator[Candidate]:
+    """Yield the methods whose steps are the ``few`` first wrong rows, the best first."""
+    answer.budget.left = max(answer.budget.left, _TRIED)
+    every = list[tuple[float, Steps]]()
+    for name, method in _methods(answer):
+        if (steps := _steps(few, answer.spacing, name, method)) is not None:
+            every.append((_left_of_all(few.answer, steps, answer.spacing), steps))
+            if every[-1][0] < _EXACT:
+                break
+    for _, steps in sorted(every, key=lambda each: each[0]):
+        answer.budget.left = max(answer.budget.left, _SETTLED)
+        yield steps.candidate(name_of_steps(steps, answer), LEAVES, {})
+
+
+def _left_of_all(answer: Answer, steps: Steps, spacing: float) -> float:
+    """Return what steps leave of the motion and the attitude: loads need not tell how that is turned."""
+    motion = steps.method.run(answer, answer.right, spacing / steps.count, 0)
+    return max(answer.leaves(motion).values())
+
+
+def _methods(answer: Answer) -> Iterator[tuple[str, Method]]:
+    explicit = ((name, method) for name, method in METHODS.items() if not method.is_dear)
+    for name, method in (*explicit, *explicit_with_updates(answer.n), *with_frames()):
+        yield name, replace(method, has_frame=True, run=partial(_run, method))
+
+
+def _run(method: Method, answer: Answer, equations: Equations, h: float, components: int) -> Motion:
+    (motion,) = courses(with_steps(replace(answer, right=equations), method, h), [{}], h)
+    return motion
+
+
+def _steps(few: Courses, spacing: float, name: str, method: Method) -> Steps | None:
+    """Return a method with the number of steps that leaves least; None if that is much, or too dear."""
+
+    @cache
+    def error(count: int) -> Floats:
+        """The error of so many steps from row to row, as `Courses.defects` has it."""
+        answer, right = few.answer, few.answer.right
+        motion = method.run(answer, right, spacing / count, 0)
+        return np.asarray(few.of_right - ((answer.file.v - motion.v) / answer.sizes).T)
+
+    def left(count: int) -> float:
+        part = float(np.linalg.norm(few.of_right - error(count))) / few.size
+        return part if np.isfinite(part) else np.inf
+
+    with suppress(Spent), few.answer.budget.at_most(few.answer.budget.left):
+        size = float(np.sum(error(_FINE) ** 2))
+        part = float(np.sum(error(_FINE) * few.of_right)) / size if 0 < size < np.inf else 0.0
+        if part <= 0 or np.linalg.norm(few.of_right - part * error(_FINE)) > _NEAR * few.size:
+            return None
+        count = round(_FINE * part ** (-1 / method.order))
+        if count <= _MOST:
+            best = nearest_count(left, max(1, count), _MOST)
+            if left(best) < max(LEAVES, ROUNDINGS * few.floor):
+                return Steps(name, method, best, left(best))
+    return None
