@@ -367,10 +367,10 @@ def in_steps(text: str, step: Step, parts: list[float]) -> dict[str, Any]:
     ("text", "step", "parts", "name"),
     by_turns(
         [
-            (INTEGRAL, _heun, [1 / 3] * 3, "truncation of order 2: Heun, h = 0.0166667"),
+            (INTEGRAL, _heun, [1 / 3] * 3, "Heun whose stages read q as it is, h = 0.0166667"),
             (BODY, _heun, [1.0], "truncation of order 2: Heun, h = 0.05"),
             (INTEGRAL, _euler_with_turn, [1 / 2] * 2, "turned by the rate at the end of the step"),
-            (BODY, _euler_with_turn, [1 / 2] * 2, "turned by the rate at the end of the step"),
+            (BODY, _euler_with_turn, [1 / 2] * 2, "explicit Euler, h = 0.025"),
             (INTEGRAL, _heun, [2 / 5, 3 / 5], None),
             (BODY, _heun, [2 / 5, 3 / 5], None),
         ],

@@ -6,6 +6,7 @@ Over an arc the state is led back to where it was a step before: that tells the 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise, product
 from typing import Any, Final
@@ -69,7 +70,29 @@ def runs(*steps: _Step) -> Callable[..., Motion | None]:
     return run
 
 
-def _run(step: _Step, answer: Answer, equations: Equations, h: float, components: int) -> Motion:
+def never_of_unit_length(method: Method) -> Method:
+    """Return a method that leaves q as long as it becomes, which loads tell that read it as it is."""
+
+    def step(
+        equations: Equations, time: Floats, z: Floats, h: Floats, before: Any
+    ) -> tuple[Floats, Any]:
+        return method.step(equations, time, z, h), None
+
+    def run(answer: Answer, equations: Equations, h: float, components: int) -> Motion:
+        framed = equations.framed(method.frame or equations.frame)
+        return _run(step, answer, framed, h, components, is_unit=False)
+
+    return replace(method, run=run)
+
+
+def _run(
+    step: _Step,
+    answer: Answer,
+    equations: Equations,
+    h: float,
+    components: int,
+    is_unit: bool = True,
+) -> Motion:
     """Return the motion of steps of h, or a little less or more so that they end at each row."""
     n, all_ = answer.n, answer.with_start(equations.mass)
     frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
@@ -81,7 +104,7 @@ def _run(step: _Step, answer: Answer, equations: Equations, h: float, components
         answer.budget.spend(count * price)
         for k in range(count):
             z, memory = step(equations, begin + k * own, z, own, memory)
-            if components > n:
+            if components > n and is_unit:
                 z = with_unit_attitude(z, n)
         rows.append(z)
     made = np.concatenate(rows)[:, :, 0]

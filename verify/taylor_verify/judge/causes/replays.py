@@ -21,7 +21,7 @@ from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import across, fault, orthonormal
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.methods_with_memory import with_memory
+from taylor_verify.judge.causes.methods_with_memory import never_of_unit_length, with_memory
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.replayed_methods import (
     METHODS,
@@ -56,6 +56,8 @@ _SLIGHT: Final = 1e-3
 # Of each method the best fits beside a fault give its numbers of steps; some methods are tried.
 _FITS: Final = 4
 _METHODS: Final = 3
+# Of so many rows from the start.
+_FIRST: Final = 12
 # Words that programs look for.
 _WORDS: Final = {
     "explicit Euler": "explicit gyroscopic step: explicit Euler",
@@ -148,12 +150,31 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
         late = held_loads.late_methods(acting) if acting else {}
         more = {**late, **with_memory(answer.right)}
         tried += [] if beyond is None else [beyond.steps(more, _ALONE)]
-    for steps in _each_best(chain(*tried)):
+    for steps in _with_drift(answer, _each_best(chain(*tried)), replayed.floor):
         near = LEAVES if steps.method.run is None else _NEARLY
         if steps.left < max(near, ROUNDINGS * replayed.floor):
             h = steps.step(answer)
             changes = steps.method.held.changes(answer, h) if steps.method.held else {}
             yield steps.candidate(name_of_steps(steps, answer), near, changes)
+
+
+def _with_drift(answer: Answer, best: list[Steps], floor: float) -> Iterator[Steps]:
+    """Yield steps, and those whose stages read q as it is with a length that drifts, if none are exact.
+
+    A drift is seen from the start alone; the arcs tell the number of steps nearly.
+    """
+    yield from best
+    if not best or best[0].left < ROUNDINGS * floor:
+        return
+    few, drifting = answer.at(np.s_[:_FIRST]), list[Steps]()
+    for steps in [each for each in best if each.method.frame is not None][:_METHODS]:
+        name, method = f"{steps.name}, never of unit length", never_of_unit_length(steps.method)
+        for count in range(max(1, steps.count - 1), steps.count + 2):
+            motion = moved_by(replace(steps, method=method), answer.spacing / count, few, few.right)
+            if motion is not None:
+                left = max(few.leaves(motion).values())
+                drifting.append(Steps(name, method, count, left))
+    yield from sorted(drifting, key=lambda steps: steps.left)[:1]
 
 
 def _clear(answer: Answer, stride: int) -> _Replays | None:
