@@ -10,6 +10,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.changed_texts import names_inertia, with_inertia
+from taylor_verify.judge.causes.energies import keys_of
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import places
 from taylor_verify.numbers.tensors import ZERO_VECTOR
@@ -39,7 +40,10 @@ def changed_scene(right: Equations, changes: Changes) -> str:
         if right.loads is not None and names_inertia(right.loads):
             lines |= _changed_entries(right.loads, with_inertia(right.loads, right.mass))
         rows = [_list(map(number, row)) for row in _symmetric(other.mass)]
-        lines["inertia" if n == 3 else "mass_matrix"] = _list(rows)
+        if right.energy is not None:
+            lines |= keys_of(_symmetric(other.inverse), number)
+        else:
+            lines["inertia" if n == 3 else "mass_matrix"] = _list(rows)
     if "rotor" in changes and np.any([right.rotor, other.rotor]):
         lines["rotor"] = _list(map(number, other.rotor))
     if "damping" in changes:

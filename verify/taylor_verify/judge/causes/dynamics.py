@@ -17,6 +17,7 @@ from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
 from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.damped_steps import damped_steps
+from taylor_verify.judge.causes.energies import families_of_energies
 from taylor_verify.judge.causes.engine_steps import capped_speed, cleared_loads
 from taylor_verify.judge.causes.fit import (
     DIFFERENCE,
@@ -112,6 +113,7 @@ class Dynamics:
         return [
             *families_of_terms(right, sizes),
             *families_of_bodies(right, sizes),
+            *families_of_energies(right),
             *(number.family(right) for number in of_texts),
             *points_of_weights(right),
         ]

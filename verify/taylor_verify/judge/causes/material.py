@@ -14,6 +14,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.causes.basis import basis
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.changed_equations import Equations
+from taylor_verify.judge.causes.energies import as_written
 from taylor_verify.judge.causes.float_answer import (
     Answer,
     Motion,
@@ -104,6 +105,7 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
         start=float(given.clock.start),
         damping=float(body.damping),
         added=None if added is None else np.array(added, dtype=float),
+        energy=as_written(energy, mass) if added is None else None,
         acting=acting,
     )
 

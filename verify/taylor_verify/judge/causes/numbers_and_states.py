@@ -14,6 +14,7 @@ from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_course import Courses
 from taylor_verify.judge.causes.dynamics import Search, search_by
+from taylor_verify.judge.causes.energies import families_of_energies
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Sizes
 from taylor_verify.judge.causes.float_answer import Answer, Places
 from taylor_verify.judge.causes.many_flows import Floats
@@ -46,6 +47,7 @@ def in_states(answer: Answer) -> Cause | None:
         cause = cause or search.cause([*search.fitted(_written(answer))])
         sizes = Sizes.of(answer)
         families = [*families_of_terms(right, sizes), *families_of_bodies(right, sizes)]
+        families += families_of_energies(right)
         one = [each for each in families if each.count == 1 and each.kind != "clock"]
         cause = cause or search.cause([*search.fitted(one)])
         cause = cause or search.cause([*search.from_far([*phase_of_sampling(right)])])
