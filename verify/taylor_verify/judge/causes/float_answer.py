@@ -27,6 +27,9 @@ ATTITUDE: Final = 4.0
 _WRONG: Final = 30.0
 # The search itself is no better.
 _ARITHMETIC: Final = 1e-12
+# A path is another one if it is off by more than this part of the error, and of the reach.
+_OFF_PATH: Final = 0.1
+_NO_PATH: Final = 1e-6
 _SAME_START: Final = 10.0
 
 
@@ -203,6 +206,16 @@ class Answer:
     def leaves(self, motion: Motion) -> dict[str, float]:
         """Return the part of each failed group's error that a motion leaves, where the motion has it."""
         return self.parts(self.errors(motion))
+
+    def has_path_of(self, motion: Motion) -> bool:
+        """Return True if the path is about that of a motion, as far as both have one.
+
+        The momenta and the attitude of a free body do not tell all of its coefficients, as the path does.
+        """
+        off = self.errors(motion).get("centre", np.zeros(1))
+        return float(np.max(off)) <= max(
+            _OFF_PATH * self.worst.get("centre", 0.0), _NO_PATH * self.reach
+        )
 
     def parts(self, errors: Mapping[str, Floats]) -> dict[str, float]:
         """Return the largest errors of the failed groups as parts of those of the answer."""

@@ -170,7 +170,7 @@ class Choice:
         return is_whole and not is_alike and other.count == first.candidate.count
 
     def _as_well(self, best: Candidate) -> float:
-        """Return the defects that a candidate may leave which does as well as the best."""
+        """The defects that a candidate may leave which does as well as the best."""
         return max(BETTER * best.defects, _EXACT_ROUNDINGS * self.floor, NOTHING)
 
     def _proof(self, candidate: Candidate, most: float) -> _Proven | None:
@@ -216,11 +216,9 @@ class Choice:
         if not tries_short or proven.worst > _OF_SHORT:
             return False
         differences = family.right + _short(candidate.numbers - family.right)
-        for numbers in (_short(candidate.numbers), differences):
-            short = self._left(replace(candidate, numbers=numbers))
-            if short is not None and short.worst <= max(proven.worst, self._least):
-                return True
-        return False
+        enough, both = max(proven.worst, self._least), (_short(candidate.numbers), differences)
+        some = (self._left(replace(candidate, numbers=numbers)) for numbers in both)
+        return any(short is not None and short.worst <= enough for short in some)
 
     def _leaves_rounding(self, proven: _Proven, groups: Sequence[str]) -> bool:
         """Return True if what is left of groups is no more than the file, and the search, round off."""
@@ -233,9 +231,10 @@ class Choice:
         )
 
     def _left(self, candidate: Candidate) -> _Proven | None:
-        """Return what a candidate leaves of the whole answer; None where it has no motion."""
+        """Return what a candidate leaves of the whole answer; None where it has no motion, or no path."""
         motion = candidate.motion(self.answer, candidate.changes)
-        if motion is None:
+        is_body = "mass" in candidate.changes and candidate.count > 1
+        if motion is None or (is_body and not self.answer.has_path_of(motion)):
             return None
         leaves = self.answer.leaves(motion)
         # Two faults at once explain whatever the motion has, or nothing.
