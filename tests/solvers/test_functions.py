@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.scenes import text_of
+from scipy.optimize import OptimizeResult as OdeResult
 
 import taylor_verify
 from taylor_verify.judge.judgement import Judgement
@@ -65,7 +66,9 @@ ANSWERS: dict[str, Callable[[Problem], Any]] = {
     "a result at steps, with a dense output": lambda p: SimpleNamespace(
         t=np.array([0.0, 1.0]), y=omega([0.0, 1.0]), sol=omega
     ),
+    "a result that is a dict": lambda p: OdeResult(t=times(p), y=omega(times(p))),
     "a dense output": lambda p: omega,
+    "the trajectory of a solver": lambda p: Callback(rows).solve(p),
     "a dict": lambda p: {"t": times(p), "omega": rows(p)},
     "a dict without times": lambda p: {"omega": rows(p)},
     "columns by name": lambda p: dict(

@@ -223,7 +223,8 @@ def by_hand(problem: Problem) -> np.ndarray:  # type: ignore[type-arg]
 
     def rates(t: float, y: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
         w, q = y[:3], y[3:]
-        turned = np.linalg.solve(inertia, np.cross(inertia @ w, w) + problem.loads(start + t, y))
+        moment = problem.loads(start + t, y, piece=piece)
+        turned = np.linalg.solve(inertia, np.cross(inertia @ w, w) + moment)
         product = [-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))]
         return np.concatenate([turned, np.array(product) / 2])
 
@@ -233,8 +234,7 @@ def by_hand(problem: Problem) -> np.ndarray:  # type: ignore[type-arg]
     stops = sorted({*map(float, problem.switches), *elapsed})
     rows, now = [], 0.0
     for stop in (s for s in stops if 0 <= s <= elapsed[-1]):
-        # The last stage stays before the switch.
-        h = (stop - now) / 200 * (1 - 1e-15)
+        piece, h = sum(s < stop for s in map(float, problem.switches)), (stop - now) / 200
         for k in range(200):
             y = step(rates, now + k * h, y, h)
         now = stop
@@ -261,6 +261,18 @@ def test_loads_take_many_times_and_states_at_once(name: str) -> None:
     np.testing.assert_allclose(together, single, rtol=1e-14, atol=1e-15)
     # The moment, or force and couple.
     assert together.shape == (20, 3 if problem.given.model == "euler" else 6)
+
+
+def test_a_piece_that_there_is_not_is_refused() -> None:
+    """Pieces lie between the switches, and a body without wheels has a momentum of wheels that is zero."""
+    problem = pose(euler(("0.1 if t < 3/2 else 0", "0", "0"), "9/4"), rung("f64"))
+    state = np.full(7, 0.5)
+    assert [problem.loads(1.5, state, piece=k)[0] for k in (0, 1)] == [0.1, 0.0]
+    with pytest.raises(ValueError, match="expected a piece from 0 to 1, got 2"):
+        problem.loads(1.5, state, piece=2)
+    with pytest.raises(ValueError, match="expected a time, got nan"):
+        problem.loads(np.nan, state)
+    np.testing.assert_array_equal(problem.rotor(1.5, [state, state]), np.zeros((2, 3)))
 
 
 @pytest.mark.parametrize("part", [3, 5, 7, 11])

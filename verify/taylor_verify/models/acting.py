@@ -64,17 +64,20 @@ class Acting:
         # Code that was made here is made again there.
         return Acting, (self._scene, self.written, self._frame)
 
-    def loads(self, t: Any, state: Any, held: Any = None) -> Floats:
-        """Return the moment (..., 3), or force and couple in one array (..., 6)."""
-        return self._values("outputs", t, state, held)
+    def loads(self, t: Any, state: Any, held: Any = None, inside: Fraction | None = None) -> Floats:
+        """Return the moment (..., 3), or force and couple in one array (..., 6).
 
-    def rates(self, t: Any, state: Any, held: Any = None) -> Floats:
+        They are those of the piece that has an elapsed time ``inside``, where one is given.
+        """
+        return self._values("outputs", t, state, held, inside)
+
+    def rates(self, t: Any, state: Any, held: Any = None, inside: Fraction | None = None) -> Floats:
         """Return the rates of the continuous components."""
-        return self._values("rates", t, state, held)
+        return self._values("rates", t, state, held, inside)
 
-    def rotor(self, t: Any, state: Any) -> Floats:
+    def rotor(self, t: Any, state: Any, inside: Fraction | None = None) -> Floats:
         """Return the momentum of the wheels that a text writes."""
-        return self._values("rotor", t, state, None)
+        return self._values("rotor", t, state, None, inside)
 
     def functions(self, t: Any, state: Any) -> Floats:
         """Return the functions that are wanted along the motion, and act on nothing."""
@@ -103,14 +106,18 @@ class Acting:
             self.written = wider
             vars(self).pop("_switches", None)
 
-    def _values(self, which: str, t: Any, state: Any, held: Any) -> Floats:
+    def _values(
+        self, which: str, t: Any, state: Any, held: Any, inside: Fraction | None = None
+    ) -> Floats:
         """Return the values of the steps that a field of a piece lists."""
         state = np.asarray(state, dtype=float)
         held = None if held is None else np.asarray(held, dtype=float)
         elapsed = np.asarray(t, dtype=float) - float(self._start)
         if state.ndim == 1 and elapsed.ndim == 0:
+            if not np.isfinite(elapsed):
+                raise ValueError(f"expected a time, got {t}")
             self._reach(float(elapsed), float(elapsed))
-            return self._at(which, float(elapsed), state, held)
+            return self._at(which, float(elapsed), state, held, inside)
         elapsed = np.broadcast_to(elapsed, state.shape[:-1])
         if not elapsed.size:
             return np.empty((*elapsed.shape, 0))
@@ -118,9 +125,9 @@ class Acting:
             held = np.broadcast_to(held, (*elapsed.shape, held.shape[-1]))
         self._reach(float(elapsed.min()), float(elapsed.max()))
         pieces = np.searchsorted(self._switches, elapsed, side="right")
-        if pieces.min() == pieces.max():
+        if inside is not None or pieces.min() == pieces.max():
             flat = None if held is None else held.reshape(elapsed.size, held.shape[-1])
-            part = self._at(which, elapsed.ravel(), state.reshape(elapsed.size, -1), flat)
+            part = self._at(which, elapsed.ravel(), state.reshape(elapsed.size, -1), flat, inside)
             return part.reshape(*elapsed.shape, part.shape[-1])
         values: Floats | None = None
         for piece in np.unique(pieces):
@@ -132,11 +139,18 @@ class Acting:
         assert values is not None
         return values
 
-    def _at(self, which: str, elapsed: Any, state: Floats, held: Floats | None) -> Floats:
+    def _at(
+        self,
+        which: str,
+        elapsed: Any,
+        state: Floats,
+        held: Floats | None,
+        inside: Fraction | None = None,
+    ) -> Floats:
         is_one = state.ndim == 1
         columns = state.tolist() if is_one else list(state.T)
         first = elapsed if is_one else elapsed[0]
-        piece = self.written.piece(exact_value(first))
+        piece = self.written.piece(exact_value(first) if inside is None else inside)
         code = self._code(which, piece, is_one)
         inputs = self._inputs(elapsed, columns, code.names) | self._held(held, is_one)
         if missing := code.names - inputs.keys():
@@ -159,8 +173,10 @@ class Acting:
     def _held(self, held: Floats | None, is_one: bool) -> dict[str, Any]:
         if held is None:
             return {}
-        columns = held.tolist() if is_one else list(held.T)
-        return dict(zip(self.written.held_values, columns, strict=True))
+        columns, names = held.tolist() if is_one else list(held.T), self.written.held_values
+        if len(columns) != len(names):
+            raise ValueError(f"expected {len(names)} held values, got {len(columns)}")
+        return dict(zip(names, columns, strict=True))
 
     def _inputs(
         self, elapsed: Any, columns: Sequence[Any], names: frozenset[str]

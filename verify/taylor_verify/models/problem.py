@@ -14,6 +14,8 @@ from functools import cached_property
 from itertools import chain
 from typing import Any, NoReturn
 
+import numpy as np
+
 from taylor_verify.models import own, written
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.evaluated import wheels
@@ -118,29 +120,49 @@ class Problem:
         loads, clock = self.given.body.loads, self.given.clock
         return () if loads is None else loads.instants(clock.elapsed[-1])
 
-    def loads(self, t: Any, state: Any, held: Any = None) -> Any:
+    def loads(self, t: Any, state: Any, held: Any = None, piece: int | None = None) -> Any:
         """Return the loads that the scene writes down, body axes: the moment (3), or force and couple (6).
 
         ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the
         centre where they are tracked or a load reads them; then the scene's own continuous states. ``held``
         are all held values. Both are in the scene's order and units. More axes may stand in front, which
-        stay. Raises ValueError where the scene writes no loads, and for a state or held values too short.
+        stay. At a switch the loads are those after it, unless a ``piece`` is named: number k is between the
+        switches k - 1 and k of ``switches``. A step that ends at a switch asks for the piece it began in:
+        else its last stage reads the loads after the switch, and its order is lost. Raises ValueError where
+        the scene writes no loads, for a piece that there is not, and for a state or held values too short.
         """
-        return self._acting.loads(t, state, held)
+        return self._acting.loads(t, state, held, self._inside(piece))
 
-    def rotor(self, t: Any, state: Any) -> Any:
-        """Return the momentum of the wheels that a text writes, body axes; arguments as in `loads`."""
-        return self._acting.rotor(t, state)
+    def rotor(self, t: Any, state: Any, piece: int | None = None) -> Any:
+        """Return the momentum of the wheels (3), body axes; arguments as in `loads`."""
+        body = self.given.body
+        if body.loads is not None and not body.loads.rotor:
+            constant = np.array(body.parts().get("rotor", (0, 0, 0)), dtype=float)
+            return np.broadcast_to(constant, (*np.shape(state)[:-1], 3)).copy()
+        return self._acting.rotor(t, state, self._inside(piece))
 
-    def rates(self, t: Any, state: Any, held: Any = None) -> Any:
+    def rates(self, t: Any, state: Any, held: Any = None, piece: int | None = None) -> Any:
         """Return the rates of the scene's own continuous states; arguments as in `loads`."""
-        return self._acting.rates(t, state, held)
+        return self._acting.rates(t, state, held, self._inside(piece))
+
+    def _inside(self, piece: int | None) -> Fraction | None:
+        """Return an elapsed time inside a piece, or at its begin where it has no length."""
+        if piece is None:
+            return None
+        begin, end = sorted([self.given.clock.elapsed[-1], Fraction(0)])
+        edges = [begin, *self.switches, end]
+        if not 0 <= piece < len(edges) - 1:
+            raise ValueError(f"expected a piece from 0 to {len(edges) - 2}, got {piece}")
+        return (edges[piece] + edges[piece + 1]) / 2
 
     def taken(self, k: int, state: Any, held: Any) -> Any:
         """Return all held values after instant k, of a state and the held values before it.
 
-        All that are taken at one instant read what was before it.
+        All that are taken at one instant read what was before it. Raises ValueError for an instant that
+        there is not, and for a state or held values too short.
         """
+        if not 0 <= k < len(self.takings):
+            raise ValueError(f"expected an instant from 0 to {len(self.takings) - 1}, got {k}")
         return self._acting.taken(self.takings[k], state, held)
 
     @cached_property

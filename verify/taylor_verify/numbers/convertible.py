@@ -80,7 +80,8 @@ def as_rationals(value: Any) -> Any:
     """Return an answer with plain rationals, so that NumPy keeps them as they are."""
     if isinstance(value, Convertible):
         return value.nested(Fraction)
-    if isinstance(value, dict):
+    # SciPy's OdeResult is a dict with attributes.
+    if type(value) is dict:
         return {name: as_rationals(entry) for name, entry in value.items()}
     if type(value) in (list, tuple):
         return type(value)(map(as_rationals, value))

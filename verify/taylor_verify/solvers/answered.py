@@ -18,6 +18,7 @@ from taylor_verify.records.faults import Refused, cut
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.files.objects import trajectory
 from taylor_verify.solvers.files.rotation_objects import bare
+from taylor_verify.solvers.trajectory import Trajectory
 
 
 class MisshapenAnswer(ValueError):
@@ -46,7 +47,7 @@ def answer_of(answered: Any, problem: Problem) -> Any:
         return _of_result(answered, problem)
     if callable(answered):
         return _sampled(answered, problem)
-    if isinstance(answered, Mapping) or _has_names(answered):
+    if isinstance(answered, Mapping | Trajectory) or _has_names(answered):
         return _file(answered, problem)
     _check_numbers(answered)
     return answered
