@@ -17,6 +17,7 @@ from builders.scenes import text_of
 from scipy.optimize import OptimizeResult as OdeResult
 
 import taylor_verify
+from taylor_verify import solve
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
@@ -68,7 +69,7 @@ ANSWERS: dict[str, Callable[[Problem], Any]] = {
     ),
     "a result that is a dict": lambda p: OdeResult(t=times(p), y=omega(times(p))),
     "a dense output": lambda p: omega,
-    "the trajectory of a solver": lambda p: Callback(rows).solve(p),
+    "the trajectory of a solver": lambda p: solve(scene(), rows),
     "a dict": lambda p: {"t": times(p), "omega": rows(p)},
     "a dict without times": lambda p: {"omega": rows(p)},
     "columns by name": lambda p: dict(
