@@ -85,6 +85,12 @@ def test_nothing_is_found_in_sound_angles_and_in_wrong_ones() -> None:
         assert with_angles(file, load(SCENE), rung("f64")) == (file, None)
 
 
+def test_numbers_that_are_all_zero_are_no_axis_and_angle() -> None:
+    """A quaternion of length zero is no attitude, and no other meaning of it is near to the exact one."""
+    file = of_columns("q0 q1 q2 q3", np.zeros((len(ZYX), 4)))
+    assert with_angles(file, load(SCENE), rung("f64")) == (file, None)
+
+
 def euler_rates() -> Any:
     """The rates of roll, pitch and yaw of the motion."""
     _, pitch, roll = ZYX.T

@@ -219,6 +219,21 @@ def test_a_broken_plugin_is_named_in_one_line_and_harms_nobody(
         keeps_contract("tv-broken")
 
 
+def test_a_scene_that_cannot_be_read_is_left_out(
+    install: Install, tmp_path: Path, capsys: Captured, caplog: pytest.LogCaptureFixture
+) -> None:
+    """`list` names it in one line, and goes on with the others of its folder."""
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    (folder / "broken.toml").write_text("no document")
+    (folder / "rest.toml").write_bytes(Path("cases/euler/rest.toml").read_bytes())
+    (tmp_path / "tv_scenes.py").write_text(f"folder = {str(folder)!r}")
+    install("tv-scenes", {"scenes": "mine = tv_scenes:folder"})
+    assert main(["list", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["added"] == ["mine/rest"]
+    assert any("mine/broken is left out" in record.getMessage() for record in caplog.records)
+
+
 def test_what_ends_the_program_is_no_pass(
     install: Install, tmp_path: Path, capsys: Captured
 ) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+import logging
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from itertools import chain
 from typing import Final
 
 from taylor_verify.cli.answer import PASS, Answer
@@ -12,6 +14,7 @@ from taylor_verify.cli.arguments import OWN_VERBS
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.verbs import KIND as VERBS
 from taylor_verify.cli.verbs import verbs
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.plugins import KINDS, Plugin, plugins
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.schema import schema, text
@@ -36,7 +39,9 @@ def answer(options: argparse.Namespace) -> Answer:
     }
     if added := list(added_names()):
         scenes["added"] = added
-    titles = {name: load(name).title for group in scenes.values() for name in group}
+    every = chain.from_iterable(scenes.values())
+    titles = dict(chain.from_iterable(map(_title, every)))
+    scenes = {kind: [name for name in group if name in titles] for kind, group in scenes.items()}
     families = {name: family(name).title for name in family_names()}
     formats = {suffix: form.sentence for suffix, form in FORMATS.items()}
     formats |= {suffix: f"{plugin.name} {plugin.origin}" for suffix, plugin in plugged().items()}
@@ -54,6 +59,18 @@ def answer(options: argparse.Namespace) -> Answer:
     shown = partial(_text, {**names_by_group, "plug-ins": list(origins)}, sentences, GUIDE)
     document = {**names_by_group, "guide": dict(GUIDE), "plugins": packages}
     return Answer(PASS, document, shown)
+
+
+def _title(name: str) -> Iterator[tuple[str, str]]:
+    """Yield a scene's name with its title; one of a plug-in that cannot be read is named on stderr."""
+    try:
+        yield name, load(name).title
+    except Refused as refusal:
+        if name not in added_names():
+            raise
+        logging.getLogger(__name__).warning(
+            "taylor-verify: warning: %s is left out: %s", name, refusal
+        )
 
 
 def _added(kind: str) -> list[Plugin]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import inf
+from math import inf, isnan
 
 import numpy as np
 
@@ -78,6 +78,8 @@ def _nearness(gate: Gate, k: int, finding: Finding) -> float:
 
 def _remark(quantity: str, error: float, finding: Finding, start: float) -> str:
     row, off = f"the row at the start, t = {start:g}", f"its {quantity} is off by {error:.3g}"
+    if isnan(error):
+        off = f"its {quantity} is no number"
     if not error <= finding.bound:
         return f"{row}, is not the scene's initial state: {off}"
     if finding.is_rounding or finding.tolerance is None:

@@ -42,6 +42,8 @@ _TURNS: Final = {"z": "yaw", "y": "pitch", "x": "roll"}
 _NOISE: Final = 64 * FLOAT64
 # Quaternions that are integrated without restoring their length stay as near to it.
 _UNIT: Final = 0.1
+# Attitudes are no farther apart, as `_apart` measures; numbers that are none are infinitely far.
+_FARTHEST: Final = 2.0
 # Factors of an angle, with the words for what the numbers are then.
 _OF_ANGLES: Final = {
     Fraction(1): "{}",
@@ -221,7 +223,7 @@ def _explained(
     plain, best = errors[0], min(errors)
     enough = AS_WELL * max(best, _NOISE)
     good = [m for m, error in zip(every, errors, strict=True) if error <= enough]
-    if not best <= EXPLAINS * plain or plain <= enough:
+    if not best <= EXPLAINS * min(plain, _FARTHEST) or plain <= enough:
         return None, every[0]
     first, *others = good
     count = len(first.words(file.form))
