@@ -129,8 +129,10 @@ def _in_short(judged_runs: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
     exact_drifts = sum(
         verdict.max == 0 for run in judged_runs for verdict in run.conserved.values()
     )
+    middle = median(finite)
+    half = f"below {bold(figure(middle))} of what is attainable" if middle else bold("zero")
     return (
-        f"{text}. Half of the errors are below {bold(figure(median(finite)))} of what is attainable; "
+        f"{text}. Half of the errors are {half}; "
         f"{exact_drifts} conserved quantities are kept exactly."
     )
 

@@ -34,6 +34,10 @@ _PART: Final = 6
 _SPREAD: Final = 8
 # What a motion leaves of the errors is settled if it is so little, or if a finer step leaves no less.
 _LITTLE: Final = 5e-4
+_NOTHING: Final = 1e-9
+# A step of a quarter is taken if so many times the work of the last one is left.
+_FINER: Final = 12.0
+_OF_OWN: Final = 4
 # A changed scene that explains some rows may cost so much on all of them.
 _SETTLED: Final = 2_500_000.0
 _HALVINGS: Final = 4
@@ -94,13 +98,16 @@ class Courses(Evidence):
         best, before = None, np.inf
         h = min(self.step, float(np.max(np.diff(answer.times, prepend=answer.begins))))
         for _ in range(_HALVINGS):
+            work = answer.budget.left
             (motion,) = courses(answer, [changes], h)
+            work -= answer.budget.left
             left = max(answer.leaves(motion).values())
             if not np.isfinite(left):
                 left = np.inf
             elif best is None or left < before:
                 best = motion
-            if left < _LITTLE or before / 2 < left < np.inf:
+            is_enough = left < _LITTLE and answer.budget.left < _FINER * work
+            if left < _NOTHING or is_enough or before / 2 < left < np.inf:
                 break
             before, h = left, h / 4
         return best
@@ -127,7 +134,8 @@ def courses(answer: Answer, sets: Sequence[Changes], h: float) -> Iterator[Motio
 
 def own_rows(answer: Answer, changes: Changes) -> dict[str, Floats]:
     """Return the rows of each own state in a changed scene, (rows, components), by its name."""
-    course = Course(answer, answer.right.copies([changes]), 1, Courses.of(answer).step)
+    step = Courses.of(replace(answer, stepping=None)).step / _OF_OWN
+    course = Course(answer, answer.right.copies([changes]), 1, step)
     rows = list[dict[str, list[float]]]()
     for time in answer.times.tolist():
         course.move(time)

@@ -26,6 +26,7 @@ from taylor_verify.judge.causes.material import (
 from taylor_verify.judge.causes.missing_load import missing_load
 from taylor_verify.judge.causes.plugged import plugged_causes
 from taylor_verify.judge.causes.proof import may_leave
+from taylor_verify.judge.causes.replays import stepped
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem
@@ -243,7 +244,8 @@ def _left_of_states(
     parts, errors = dict[str, float](), dict[str, float]()
     with suppress(*_SILENT):
         answer = replace(answer, budget=Budget(_FOR_A_LOAD))
-        right, changed = (own_rows(answer, changes) for changes in ({}, cause.changes))
+        moved = stepped(answer, cause.method) if cause.method else answer
+        right, changed = own_rows(answer, {}), own_rows(moved, cause.changes)
         for name, rows in own.items():
             error = float(np.max(np.abs(rows - right[name])))
             if error > 0 and name in changed:
