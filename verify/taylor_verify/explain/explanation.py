@@ -21,6 +21,7 @@ from taylor_verify.explain.loads import loads_document
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.attainable import orbit_of_run
 from taylor_verify.judge.floor.carrying import Carrying, carrying
+from taylor_verify.judge.judged_rows import question_record
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.form import Form
 from taylor_verify.models.general import in_general_form, whole_form
@@ -67,6 +68,9 @@ def explanation(scene: Scene | str | PathLike[str], rung: Rung | str) -> dict[st
     too_long = _unjudged(scene, rung)
     judged, lacking = patience.made(partial(_judged, scene, rung), too_long)
     record = judged.record.document() if judged.record is not None else {}
+    if lacking:
+        with suppress(NotRepresentable, Unsettled):
+            record = question_record(pose(scene, rung))
     first = judged.verdicts[0]
     effort = ("steps", "evaluations", "seconds")
     condition = partial(_condition, scene, path, rung)

@@ -86,26 +86,33 @@ class Run:
         return float(self.problem.given.clock.start)
 
 
+def question_record(problem: Problem) -> dict[str, Any]:
+    """Return what the record of a run holds of its question alone."""
+    exact, units = solution(problem.given), problem.units
+    return {
+        "equations": problem.form.text(),
+        "parameters": {n: hexadecimal(value) for n, value in problem.parameter.items()},
+        "units": {n: shown(getattr(units, n)) for n in ("time", "momentum", "impulse")},
+        "regime": exact.regime,
+        "route": exact.route,
+        "truth_digits": truth_digits(problem.rung.bits),
+        "unit_roundoff": float(problem.rung.unit_roundoff),
+    }
+
+
 def run_record(run: Run, gates: Iterable[GateRecord]) -> Record:
     """Return the record of a run whose quantities were compared."""
     problem, trajectory = run.problem, run.trajectory
-    exact = solution(problem.given)
-    scene, units = problem.scene, problem.units
+    scene = problem.scene
     return Record(
         scene=scene.name,
         title=scene.title,
         solver=run.solver.name,
         rung=problem.rung.name,
         track=tuple(sorted(scene.track)),
-        equations=problem.form.text(),
-        parameters={n: hexadecimal(value) for n, value in problem.parameter.items()},
-        units={n: shown(getattr(units, n)) for n in ("time", "momentum", "impulse")},
-        regime=exact.regime,
-        route=exact.route,
-        truth_digits=truth_digits(problem.rung.bits),
+        **question_record(problem),
         outcome=trajectory.outcome.value,
         steps=trajectory.steps,
-        unit_roundoff=float(problem.rung.unit_roundoff),
         times=tuple(run.times.tolist()),
         gates=tuple(gates),
     )
