@@ -23,10 +23,12 @@ def test_what_takes_longer_is_left_out() -> None:
 
 
 def test_an_explanation_says_what_it_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without the run there are no gates, one undecided row, and a warning; the orbit is there."""
+    """Without the run there are no gates, one undecided row, and a warning; orbit and equations are there."""
+    equations = explain("euler/generic")["equations"]
     monkeypatch.setattr(explaining, "_judged", lambda *_: endless())
     monkeypatch.setattr(explaining, "_SECONDS", 1.0)
     content = explain("euler/generic")
     assert any(warning.startswith("left out: the run") for warning in content["warnings"])
     assert [row["verdict"] for row in content["gates"]] == ["undecided"]
     assert content["orbit"]["period"]
+    assert content["equations"] == equations
