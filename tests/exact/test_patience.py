@@ -23,7 +23,7 @@ def test_what_takes_longer_is_left_out() -> None:
 
 
 def test_an_explanation_says_what_it_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without the run there are no gates, one undecided row, and a warning; orbit and equations are there."""
+    """Without the run there are no gates, one undecided row, a warning; orbit and equations are there."""
     equations = explain("euler/generic")["equations"]
     monkeypatch.setattr(explaining, "_judged", lambda *_: endless())
     monkeypatch.setattr(explaining, "_SECONDS", 1.0)
