@@ -37,7 +37,9 @@ def account(
     for verdict in verdicts:
         row = f"{verdict.scene} {verdict.rung} {with_numbers(verdict)}"
         lines.append(f"{verdict.verdict}  {row}")
-        if verdict.verdict in _MENDS and not verdict.is_waived:
+        # No tolerance decides what was not compared, as rows that a file does not have.
+        is_open = verdict.verdict is Status.UNDECIDED and not verdict.is_compared
+        if verdict.verdict in _MENDS and not (verdict.is_waived or is_open):
             lines.append(f"    {_MENDS[verdict.verdict]}")
     for cause in causes:
         lines.append(cause_line(cause.sentence, f"{cause.scene} {cause.rung}".strip()))
