@@ -166,4 +166,6 @@ def _draw(axes: Axes, components: Series, panel: Panel) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     axes.set(ylim=(low - _ROOM * extent, high + _ROOM * extent))
     axes.axhline(0, color=QUIET, linewidth=0.5, zorder=0)
+    # A power of ten above the axis would push the title off the sheet.
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:.4g}".replace("-", "\N{MINUS SIGN}"))
     axes.set_title(panel.name, pad=4)
