@@ -275,3 +275,45 @@ def test_a_leapfrog_whose_loads_read_the_attitude_is_named(
 
     words = "leapfrog, attitude turned by the rate in the middle of the step, h = 0.025"
     assert (words in titles(tmp_path, HANGING, rigid(leap, 4))) == is_named
+
+
+@pytest.mark.parametrize(
+    ("restores", "words"),
+    by_turns(
+        [
+            (True, "RK4 whose stages read q as it is, h = 0.025"),
+            (False, "RK4 whose stages read q as it is, never of unit length, h = 0.025"),
+            (None, None),
+        ],
+        4,
+        lambda restores, words: restores,
+    ),
+)
+def test_stages_that_read_q_as_it_is_are_named(
+    restores: bool | None, words: str | None, tmp_path: Path
+) -> None:
+    """R of a stage is |q|^2 times a rotation; with q restored at one stage it is another method."""
+
+    def rates(z: Array) -> Array:
+        w, q = z[:3], z[3:]
+        down = np.array([q[1] * q[3] - q[0] * q[2], q[2] * q[3] + q[0] * q[1], 0.0]) * 2
+        down[2] = q[0] ** 2 - q[1] ** 2 - q[2] ** 2 + q[3] ** 2
+        moment = np.cross(POINT, WEIGHT[2] * down)
+        return np.concatenate([spin(w) + np.linalg.solve(TENSOR, moment), turned(q, w)])
+
+    def unit(z: Array) -> Array:
+        return np.concatenate([z[:3], z[3:] / np.linalg.norm(z[3:])])
+
+    own = [START]
+
+    def classical(z: Array, h: float) -> Array:
+        # `rigid` restores the length of what it is given.
+        z = own[0] if restores is False else z
+        first = rates(z)
+        second = rates(unit(z + h / 2 * first) if restores is None else z + h / 2 * first)
+        third = rates(z + h / 2 * second)
+        own[0] = z + h / 6 * (first + 2 * second + 2 * third + rates(z + h * third))
+        return own[0].copy()
+
+    names = titles(tmp_path, HANGING, rigid(classical, 4))
+    assert [words in name for name in names] == [True] if words else not names

@@ -108,6 +108,8 @@ def _run(
                 z = with_unit_attitude(z, n)
         rows.append(z)
     made = np.concatenate(rows)[:, :, 0]
+    if components > n:
+        made = with_unit_attitude(made, n)
     q, c = made[:, n : n + 4], made[:, n + 4 : n + 7]
     motion = Motion(made[:, :n], q if q.size else None, c if c.size else None)
     return motion if answer.is_from_start else motion.at(np.s_[1:])

@@ -305,9 +305,17 @@ _FRAMES: Final[Mapping[str, Frame]] = {
 def with_frames() -> Iterator[tuple[str, Method]]:
     """Yield methods of several stages, between which q is not of unit length, as loads may read it."""
     for name, method in METHODS.items():
-        if method.has_frame and not method.is_dear:
-            for words, frame in _FRAMES.items():
-                yield f"{name} {words}", replace(method, frame=frame)
+        if method.has_frame:
+            yield from as_it_is(name, method)
+
+
+def as_it_is(name: str, method: Method) -> Iterator[tuple[str, Method]]:
+    """Yield an explicit method with the ways in which its stages may read q that is not of unit length."""
+    if method.frame is not None:
+        yield name, method
+    elif not (method.is_dear or method.run or method.held):
+        for words, frame in _FRAMES.items():
+            yield f"{name} {words}", replace(method, frame=frame)
 
 
 def _leapfrog(n: int, equations: Equations, time: Floats, z: Floats, h: Floats) -> Floats:

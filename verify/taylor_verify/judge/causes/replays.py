@@ -28,6 +28,7 @@ from taylor_verify.judge.causes.replayed_methods import (
     OF_MOMENTUM,
     OF_PUSHED_MOMENTUM,
     Method,
+    as_it_is,
     with_frames,
     with_unit_attitude,
     with_updates,
@@ -167,8 +168,11 @@ def _with_drift(answer: Answer, best: list[Steps], floor: float) -> Iterator[Ste
     if not best or best[0].left < ROUNDINGS * floor:
         return
     few, drifting = answer.at(np.s_[:_FIRST]), list[Steps]()
-    for steps in [each for each in best if each.method.frame is not None][:_METHODS]:
-        name, method = f"{steps.name}, never of unit length", never_of_unit_length(steps.method)
+    if answer.right.coupled == answer.n:
+        return
+    ways = [(each, *way) for each in best[:_METHODS] for way in as_it_is(each.name, each.method)]
+    for steps, own, framed in ways:
+        name, method = f"{own}, never of unit length", never_of_unit_length(framed)
         for count in range(max(1, steps.count - 1), steps.count + 2):
             motion = moved_by(replace(steps, method=method), answer.spacing / count, few, few.right)
             if motion is not None:
@@ -193,7 +197,8 @@ def name_of_steps(steps: Steps, answer: Answer) -> str:
     if steps.method.held:
         when = f"every {long.removeprefix('h = ')}" if "h = " in long else f"at each of {long}"
         return f"{steps.method.held.words} taken {when}{steps.method.held.late} and held in between"
-    words = _WORDS.get(steps.name, steps.name) if answer.n == 3 else steps.name
+    name, whose, frame = steps.name.partition(" whose ")
+    words = (_WORDS.get(name, name) if answer.n == 3 else name) + whose + frame
     if steps.method.order > 1:
         words = f"truncation of order {steps.method.order}: {steps.name}"
     return f"{words}, {long}"
