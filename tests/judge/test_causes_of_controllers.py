@@ -325,6 +325,8 @@ def test_rows_on_instants_that_no_double_is_have_a_floor(tmp_path: Path) -> None
 INTEGRAL = BODY.replace(
     CONTINUOUS, '[states]\nj = { start = [0, 0, 0], rate = ["w1", "w2 - 0.1*j1", "q3"] }\n'
 ).replace('"a1", "a2", "a3"', '"-kp*w1 - 0.3*j1", "-kp*w2 - 0.2*j2", "-0.4*q3 - 0.1*j3"')
+# Each second instant is between two rows, and ends a step.
+SLOW = BODY.replace("samples = 15", "samples = 8")
 Step = Callable[[Callable[[float, Array], Array], float, Array, float], Array]
 
 
@@ -371,6 +373,7 @@ def in_steps(text: str, step: Step, parts: list[float]) -> dict[str, Any]:
             (BODY, _heun, [1.0], "truncation of order 2: Heun, h = 0.05"),
             (INTEGRAL, _euler_with_turn, [1 / 2] * 2, "turned by the rate at the end of the step"),
             (BODY, _euler_with_turn, [1 / 2] * 2, "explicit Euler, h = 0.025"),
+            (SLOW, _heun, [1.0], "Heun, h = 0.05"),
             (INTEGRAL, _heun, [2 / 5, 3 / 5], None),
             (BODY, _heun, [2 / 5, 3 / 5], None),
         ],

@@ -82,9 +82,24 @@ def test_what_the_path_alone_would_tell_is_not_told_apart() -> None:
     assert "not told apart from: clebsch.p_prime = 1.4 for 1.5" in cause.sentence
 
 
-def test_a_body_with_another_path_is_no_cause() -> None:
-    """Three coefficients differ: a body of these momenta whose path is another one is not named."""
-    changed = SOLID.replace("p = 1,", "p = 1.1,").replace("r = 2", "r = 2.2")
-    judged, judged_by = of_motion(changed.replace("q_prime = 0.2", "q_prime = 0.3"), SOLID)
+@pytest.mark.parametrize(
+    "changes",
+    by_turns(
+        [
+            [("p = 1,", "p = 1.2,"), ("p_prime = 1.5", "p_prime = 1.8")],
+            [("q = 0.1", "q = 0.12"), ("q_prime = 0.2", "q_prime = 0.22")],
+            [("p = 1,", "p = 1.1,"), ("r = 2", "r = 2.2"), ("q_prime = 0.2", "q_prime = 0.3")],
+        ],
+        2,
+    ),
+)
+def test_several_coefficients_are_no_other_body_and_no_convention(
+    changes: list[tuple[str, str]],
+) -> None:
+    """A body of these momenta with another path is not named, nor is a frame that the attitude turns in."""
+    changed = SOLID
+    for old, new in changes:
+        changed = changed.replace(old, new)
+    judged, judged_by = of_motion(changed, SOLID)
     for cause in judged.causes:
         assert judged_by(printed(cause.sentence, SOLID)).passed

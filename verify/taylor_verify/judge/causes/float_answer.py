@@ -28,7 +28,7 @@ _WRONG: Final = 30.0
 # The search itself is no better.
 _ARITHMETIC: Final = 1e-12
 # A path is another one if it is off by more than this part of the error, and of the reach.
-_OFF_PATH: Final = 0.1
+_OFF_PATH: Final = 1e-3
 _NO_PATH: Final = 1e-6
 _SAME_START: Final = 10.0
 
@@ -213,9 +213,8 @@ class Answer:
         The momenta and the attitude of a free body do not tell all of its coefficients, as the path does.
         """
         off = self.errors(motion).get("centre", np.zeros(1))
-        return float(np.max(off)) <= max(
-            _OFF_PATH * self.worst.get("centre", 0.0), _NO_PATH * self.reach
-        )
+        least = max(_NO_PATH * self.reach, _WRONG * self.roundings.get("centre", 0.0))
+        return float(np.max(off)) <= max(_OFF_PATH * self.worst.get("centre", 0.0), least)
 
     def parts(self, errors: Mapping[str, Floats]) -> dict[str, float]:
         """Return the largest errors of the failed groups as parts of those of the answer."""

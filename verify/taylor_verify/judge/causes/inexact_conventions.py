@@ -371,7 +371,8 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
     if not any(is_near(q, rows) for rows in columns.values()):
         yield from _both_frames(q, truth)
     rate, relative = frame_that_turns(answer, q, truth)
-    if not is_of_steady_turn(answer, rate):
+    # Another coupling of a solid in a fluid, B + c 1, turns the attitude as well, and moves the centre.
+    if not (is_of_steady_turn(answer, rate) or "centre" in answer.failed):
         yield Reading(f"is {_THAT_TURNS} {numbers(rate)}", 3, relative)
     for words, rows in late_rows(answer, "attitude"):
         yield Reading(words, 3, rows)

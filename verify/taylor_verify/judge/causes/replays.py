@@ -69,18 +69,24 @@ _WORDS: Final = {
 
 @dataclass(frozen=True)
 class Steps:
-    """A method with its number of steps from row to row, and the part of the defects that it leaves."""
+    """A method with its number of steps from row to row, and the part of the defects that it leaves.
+
+    ``sizes`` are those of the steps where they end at other times than the rows too.
+    """
 
     name: str
     method: Method
     count: int
     left: float
+    sizes: tuple[float, ...] = ()
 
     def step(self, answer: Answer) -> float:
         return answer.spacing / self.count
 
     def words(self, answer: Answer) -> str:
         """Return how long the steps are."""
+        if self.sizes:
+            return steps_in_words(self.sizes, 1)
         return steps_in_words(np.diff(answer.times).tolist(), self.count)
 
     def candidate(self, title: str, near: float, changes: Changes) -> Candidate:

@@ -233,7 +233,7 @@ class Choice:
     def _left(self, candidate: Candidate) -> _Proven | None:
         """Return what a candidate leaves of the whole answer; None where it has no motion, or no path."""
         motion = candidate.motion(self.answer, candidate.changes)
-        is_body = "mass" in candidate.changes and candidate.count > 1
+        is_body = "mass" in candidate.changes and candidate.count > 0
         if motion is None or (is_body and not self.answer.has_path_of(motion)):
             return None
         leaves = self.answer.leaves(motion)

@@ -8,7 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache, partial
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -39,6 +41,8 @@ _FINE: Final = 4
 _NEAR: Final = 0.6
 _MOST: Final = 100
 _EXACT: Final = 1e-6
+# A row is at an instant if it is no farther from it than this part of a step.
+_APART: Final = 1e-9
 # The work that all methods may cost on the first wrong rows, and one that explains those on all rows.
 _TRIED: Final = 800_000.0
 _SETTLED: Final = 2_500_000.0
@@ -51,7 +55,7 @@ def steps_of_states(answer: Answer, few: Courses) -> Iterator[Candidate]:
     for name, method in _methods(answer):
         if (steps := _steps(few, answer.spacing, name, method)) is not None:
             every.append((_left_of_all(few.answer, steps, answer.spacing), steps))
-            if every[-1][0] < _EXACT:
+            if every[-1][0] < max(_EXACT, ROUNDINGS * few.floor):
                 break
     for _, steps in sorted(every, key=lambda each: each[0]):
         answer.budget.left = max(answer.budget.left, _SETTLED)
@@ -98,5 +102,16 @@ def _steps(few: Courses, spacing: float, name: str, method: Method) -> Steps | N
         if count <= _MOST:
             best = nearest_count(left, max(1, count), _MOST)
             if left(best) < max(LEAVES, ROUNDINGS * few.floor):
-                return Steps(name, method, best, left(best))
+                sizes = _sizes(few.answer, spacing / best)
+                return Steps(name, method, best, left(best), sizes)
     return None
+
+
+def _sizes(answer: Answer, h: float) -> tuple[float, ...]:
+    """Return the sizes of steps of about h, which end at the rows and at the instants."""
+    loads, rows = answer.right.loads, answer.times.tolist()
+    assert loads is not None
+    instants = (float(each.time) for each in loads.instants(Fraction(rows[-1])))
+    ends = sorted({answer.begins, *rows, *(time for time in instants if time > answer.begins)})
+    spans = [b - a for a, b in pairwise(ends) if b - a > _APART * h]
+    return tuple(span / max(1, round(span / h)) for span in spans)
