@@ -282,7 +282,10 @@ def test_a_leapfrog_whose_loads_read_the_attitude_is_named(
     by_turns(
         [
             (True, "RK4 whose stages read q as it is, h = 0.025"),
-            (False, "RK4 whose stages read q as it is, never of unit length, h = 0.025"),
+            (
+                False,
+                "RK4 whose stages read q as it is, never restored to unit length within the run, h = 0.025",
+            ),
             (None, None),
         ],
         4,

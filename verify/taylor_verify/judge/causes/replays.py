@@ -178,7 +178,10 @@ def _with_drift(answer: Answer, best: list[Steps], floor: float) -> Iterator[Ste
         return
     ways = [(each, *way) for each in best[:_METHODS] for way in as_it_is(each.name, each.method)]
     for steps, own, framed in ways:
-        name, method = f"{own}, never of unit length", never_of_unit_length(framed)
+        name, method = (
+            f"{own}, never restored to unit length within the run",
+            never_of_unit_length(framed),
+        )
         for count in range(max(1, steps.count - 1), steps.count + 2):
             motion = moved_by(replace(steps, method=method), answer.spacing / count, few, few.right)
             if motion is not None:
