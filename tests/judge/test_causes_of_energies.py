@@ -35,7 +35,7 @@ NO_PATH = SOLID.replace(', "centre"', "")
 
 
 def of_motion(changed: str, text: str) -> tuple[Any, Any]:
-    """What is found of the exact motion of a changed scene, and the changed scene judged by the first."""
+    """The judgement of the exact motion of a changed scene, and a judge of it by other scenes."""
     own = read(text, "solid")
     times = list(own.clock.instants)
     motion = exact(read(changed, "changed"), times, 17).quantities.items()
@@ -67,7 +67,7 @@ def printed(sentence: str, text: str) -> Scene:
 def test_a_coefficient_is_named_and_its_scene_passes(
     text: str, old: str, new: str, name: str
 ) -> None:
-    """One number explains impulses, attitude and path; the printed key, put into the scene, passes all."""
+    """The coefficient explains impulses, attitude and path; with the printed key in the scene all pass."""
     judged, judged_by = of_motion(text.replace(old, new), text)
     (cause,) = judged.causes
     assert cause.sentence.startswith(name)

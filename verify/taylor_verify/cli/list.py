@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import logging
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import chain
@@ -15,7 +14,7 @@ from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.verbs import KIND as VERBS
 from taylor_verify.cli.verbs import verbs
 from taylor_verify.records.faults import Refused
-from taylor_verify.records.plugins import KINDS, Plugin, plugins
+from taylor_verify.records.plugins import KINDS, Plugin, plugins, say_once
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.schema import schema, text
 from taylor_verify.scenes.families.shipped import family, family_names
@@ -68,9 +67,7 @@ def _title(name: str) -> Iterator[tuple[str, str]]:
     except Refused as refusal:
         if name not in added_names():
             raise
-        logging.getLogger(__name__).warning(
-            "taylor-verify: warning: %s is left out: %s", name, refusal
-        )
+        say_once(f"{name} is left out: {refusal}")
 
 
 def _added(kind: str) -> list[Plugin]:

@@ -17,6 +17,10 @@ class Budget:
 
     left: float = 300_000.0
 
+    def at_least(self, work: float) -> None:
+        """Let so much work be done from here on, whatever is left."""
+        self.left = max(self.left, work)
+
     @contextmanager
     def at_most(self, work: float) -> Iterator[None]:
         """Do something with at most so much of what is left. It raises Spent beyond that."""

@@ -38,8 +38,8 @@ _NOTHING: Final = 1e-9
 # A step of a quarter is taken if so many times the work of the last one is left.
 _FINER: Final = 12.0
 _OF_OWN: Final = 4
-# A changed scene that explains some rows may cost so much on all of them.
-_SETTLED: Final = 2_500_000.0
+# A changed scene, or a method, that explains some rows may cost so much on all of them.
+SETTLED: Final = 2_500_000.0
 _HALVINGS: Final = 4
 _ACCURATE: Final = 1e-5
 
@@ -84,7 +84,7 @@ class Courses(Evidence):
 
     def motion_of_fault(self, answer: Answer, changes: Changes) -> Motion | None:
         """Return the motion of a fault that explains some rows; there is work for it, whatever is left."""
-        answer.budget.left = max(answer.budget.left, _SETTLED)
+        answer.budget.at_least(SETTLED)
         return self.settled(answer, changes)
 
     def left_by(self, changes: Changes, defects: Floats) -> float:

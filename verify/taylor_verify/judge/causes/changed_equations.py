@@ -62,9 +62,9 @@ class Equations:
     ``held``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is omega + ``ahead``
     omega'; ``clock`` multiplies all rates, and the time that texts read. A damped step of h takes the part
     ``loss`` h of the velocities. ``in_world`` takes v for components in space axes, into which the loads
-    are turned. ``added`` is the part of ``mass`` that the scene calls added mass; ``energy`` its
-    inverse, where the scene writes that. ``path`` is another rate
-    of the centre; ``frame`` is how q is read, whose length may drift.
+    are turned. ``added`` is the part of ``mass`` that the scene calls added mass; ``energy`` is the
+    inverse of ``mass``, where the scene writes that. ``path`` is another rate of the centre; ``frame`` is
+    how q is read, whose length may drift.
     """
 
     mass: Floats

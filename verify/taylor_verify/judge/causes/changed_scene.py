@@ -39,10 +39,10 @@ def changed_scene(right: Equations, changes: Changes) -> str:
     if "mass" in changes:
         if right.loads is not None and names_inertia(right.loads):
             lines |= _changed_entries(right.loads, with_inertia(right.loads, right.mass))
-        rows = [_list(map(number, row)) for row in _symmetric(other.mass)]
         if right.energy is not None:
             lines |= keys_of(_symmetric(other.inverse), number)
         else:
+            rows = [_list(map(number, row)) for row in _symmetric(other.mass)]
             lines["inertia" if n == 3 else "mass_matrix"] = _list(rows)
     if "rotor" in changes and np.any([right.rotor, other.rotor]):
         lines["rotor"] = _list(map(number, other.rotor))

@@ -221,7 +221,7 @@ class Search:
         right, budget = self.answer.right, self.answer.budget
         texts = [fault for fault in faults_of_texts(right) if fault.name.endswith("left out")]
         faults = [fault.changes(fault.right) for fault in (*faults_of_terms(right), *texts)]
-        budget.left = max(budget.left, _BESIDE)
+        budget.at_least(_BESIDE)
         with suppress(Spent), budget.at_most(max(budget.left / 2, _BESIDE)):
             assert isinstance(self.evidence, Arcs)
             for steps in steps_beside(self.evidence, stride, few, faults):

@@ -207,12 +207,12 @@ class Answer:
         """Return the part of each failed group's error that a motion leaves, where the motion has it."""
         return self.parts(self.errors(motion))
 
-    def has_path_of(self, motion: Motion) -> bool:
-        """Return True if the path is about that of a motion, as far as both have one.
+    def is_path(self, errors: Mapping[str, Floats]) -> bool:
+        """Return True if the path is about that of a motion with these errors, where both have one.
 
         The momenta and the attitude of a free body do not tell all of its coefficients, as the path does.
         """
-        off = self.errors(motion).get("centre", np.zeros(1))
+        off = errors.get("centre", np.zeros(1))
         least = max(_NO_PATH * self.reach, _WRONG * self.roundings.get("centre", 0.0))
         return float(np.max(off)) <= max(_OFF_PATH * self.worst.get("centre", 0.0), least)
 

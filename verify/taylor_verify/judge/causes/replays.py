@@ -171,11 +171,10 @@ def _with_drift(answer: Answer, best: list[Steps], floor: float) -> Iterator[Ste
     A drift is seen from the start alone; the arcs tell the number of steps nearly.
     """
     yield from best
-    if not best or best[0].left < ROUNDINGS * floor:
+    reads_q = answer.right.coupled > answer.n
+    if not (best and reads_q) or best[0].left < ROUNDINGS * floor:
         return
     few, drifting = answer.at(np.s_[:_FIRST]), list[Steps]()
-    if answer.right.coupled == answer.n:
-        return
     ways = [(each, *way) for each in best[:_METHODS] for way in as_it_is(each.name, each.method)]
     for steps, own, framed in ways:
         name, method = (

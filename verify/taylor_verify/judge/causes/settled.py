@@ -233,10 +233,12 @@ class Choice:
     def _left(self, candidate: Candidate) -> _Proven | None:
         """Return what a candidate leaves of the whole answer; None where it has no motion, or no path."""
         motion = candidate.motion(self.answer, candidate.changes)
-        is_body = "mass" in candidate.changes and candidate.count > 0
-        if motion is None or (is_body and not self.answer.has_path_of(motion)):
+        if motion is None:
             return None
-        leaves = self.answer.leaves(motion)
+        errors = self.answer.errors(motion)
+        if "mass" in candidate.changes and candidate.count and not self.answer.is_path(errors):
+            return None
+        leaves = self.answer.parts(errors)
         # Two faults at once explain whatever the motion has, or nothing.
         names = {*self.groups, *(leaves if candidate.kind == "pair" else ())}
         worst = max(self._weighed(name, leaves.get(name, np.inf)) for name in names)
@@ -320,7 +322,6 @@ class Choice:
             if not _are_same(each.candidate.changes, first.candidate.changes)
         )
         others.pop(text, None)
-        is_whole = self._is_whole(first)
         return Cause(
             best.family.name,
             best.kind,
@@ -329,7 +330,7 @@ class Choice:
             tuple(others),
             changes,
             best.method,
-            is_whole=is_whole,
+            is_whole=self._is_whole(first),
         )
 
     @property

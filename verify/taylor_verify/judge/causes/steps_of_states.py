@@ -6,7 +6,6 @@ The error of short steps is fitted to that of the first wrong rows, in h^p; this
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
@@ -15,9 +14,8 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate
-from taylor_verify.judge.causes.changed_course import Courses, courses
+from taylor_verify.judge.causes.changed_course import SETTLED, Courses, courses
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
@@ -43,29 +41,21 @@ _MOST: Final = 100
 _EXACT: Final = 1e-6
 # A row is at an instant if it is no farther from it than this part of a step.
 _APART: Final = 1e-9
-# The work that all methods may cost on the first wrong rows, and one that explains those on all rows.
+# The work that all methods may cost on the first wrong rows.
 _TRIED: Final = 800_000.0
-_SETTLED: Final = 2_500_000.0
 
 
 def steps_of_states(answer: Answer, few: Courses) -> Iterator[Candidate]:
     """Yield the methods whose steps are the ``few`` first wrong rows, the best first."""
-    answer.budget.left = max(answer.budget.left, _TRIED)
+    answer.budget.at_least(_TRIED)
     every = list[tuple[float, Steps]]()
     for name, method in _methods(answer):
-        if (steps := _steps(few, answer.spacing, name, method)) is not None:
-            every.append((_left_of_all(few.answer, steps, answer.spacing), steps))
-            if every[-1][0] < max(_EXACT, ROUNDINGS * few.floor):
-                break
+        every += _steps(few, answer.spacing, name, method)
+        if every and every[-1][0] < max(_EXACT, ROUNDINGS * few.floor):
+            break
     for _, steps in sorted(every, key=lambda each: each[0]):
-        answer.budget.left = max(answer.budget.left, _SETTLED)
+        answer.budget.at_least(SETTLED)
         yield steps.candidate(name_of_steps(steps, answer), LEAVES, {})
-
-
-def _left_of_all(answer: Answer, steps: Steps, spacing: float) -> float:
-    """Return what steps leave of the motion and the attitude: loads need not tell how that is turned."""
-    motion = steps.method.run(answer, answer.right, spacing / steps.count, 0)
-    return max(answer.leaves(motion).values())
 
 
 def _methods(answer: Answer) -> Iterator[tuple[str, Method]]:
@@ -79,32 +69,41 @@ def _run(method: Method, answer: Answer, equations: Equations, h: float, compone
     return motion
 
 
-def _steps(few: Courses, spacing: float, name: str, method: Method) -> Steps | None:
-    """Return a method with the number of steps that leaves least; None if that is much, or too dear."""
+def _steps(few: Courses, spacing: float, name: str, method: Method) -> list[tuple[float, Steps]]:
+    """Return a method with the number of steps that leaves least; none if that is much, or too dear.
+
+    What it leaves of all quantities comes first: loads need not tell how the attitude is turned.
+    """
+    answer = few.answer
 
     @cache
+    def motion(count: int) -> Motion:
+        """The motion in so many steps from row to row."""
+        made: Motion = method.run(answer, answer.right, spacing / count, 0)
+        return made
+
     def error(count: int) -> Floats:
-        """The error of so many steps from row to row, as `Courses.defects` has it."""
-        answer, right = few.answer, few.answer.right
-        motion = method.run(answer, right, spacing / count, 0)
-        return np.asarray(few.of_right - ((answer.file.v - motion.v) / answer.sizes).T)
+        """The error of so many steps, as `Courses.defects` has it."""
+        defects = ((answer.file.v - motion(count).v) / answer.sizes).T
+        return np.asarray(few.of_right - defects)
 
     def left(count: int) -> float:
         part = float(np.linalg.norm(few.of_right - error(count))) / few.size
         return part if np.isfinite(part) else np.inf
 
-    with suppress(Spent), few.answer.budget.at_most(few.answer.budget.left):
-        size = float(np.sum(error(_FINE) ** 2))
-        part = float(np.sum(error(_FINE) * few.of_right)) / size if 0 < size < np.inf else 0.0
-        if part <= 0 or np.linalg.norm(few.of_right - part * error(_FINE)) > _NEAR * few.size:
-            return None
+    with answer.budget.share(1):
+        fine = error(_FINE)
+        size = float(np.sum(fine**2))
+        part = float(np.sum(fine * few.of_right)) / size if 0 < size < np.inf else 0.0
+        if part <= 0 or np.linalg.norm(few.of_right - part * fine) > _NEAR * few.size:
+            return []
         count = round(_FINE * part ** (-1 / method.order))
         if count <= _MOST:
             best = nearest_count(left, max(1, count), _MOST)
             if left(best) < max(LEAVES, ROUNDINGS * few.floor):
-                sizes = _sizes(few.answer, spacing / best)
-                return Steps(name, method, best, left(best), sizes)
-    return None
+                steps = Steps(name, method, best, left(best), _sizes(answer, spacing / best))
+                return [(max(answer.leaves(motion(best)).values()), steps)]
+    return []
 
 
 def _sizes(answer: Answer, h: float) -> tuple[float, ...]:
