@@ -327,6 +327,7 @@ INTEGRAL = BODY.replace(
 ).replace('"a1", "a2", "a3"', '"-kp*w1 - 0.3*j1", "-kp*w2 - 0.2*j2", "-0.4*q3 - 0.1*j3"')
 # Each second instant is between two rows, and ends a step.
 SLOW = BODY.replace("samples = 15", "samples = 8")
+UNEVEN = SLOW.replace('"1/10"', '"3/25"').replace('"1/20"', '"3/50"')
 Step = Callable[[Callable[[float, Array], Array], float, Array, float], Array]
 
 
@@ -374,6 +375,7 @@ def in_steps(text: str, step: Step, parts: list[float]) -> dict[str, Any]:
             (INTEGRAL, _euler_with_turn, [1 / 2] * 2, "turned by the rate at the end of the step"),
             (BODY, _euler_with_turn, [1 / 2] * 2, "explicit Euler, h = 0.025"),
             (SLOW, _heun, [1.0], "Heun, h = 0.05"),
+            (UNEVEN, _heun, [1.0], "Heun, steps of at most 0.06"),
             (INTEGRAL, _heun, [2 / 5, 3 / 5], None),
             (BODY, _heun, [2 / 5, 3 / 5], None),
         ],

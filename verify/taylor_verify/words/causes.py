@@ -54,10 +54,15 @@ def sentence(
 
 
 def steps_in_words(spans: Sequence[float], count: int) -> str:
-    """Return how long steps are, so many from each row to the next, over these spans."""
+    """Return how long steps are, so many from each row to the next, over these spans.
+
+    With a ``count`` of 0 the spans are those of the steps.
+    """
     sizes = sorted(abs(span) for span in spans)
     if sizes[-1] - sizes[0] < _EQUAL * sizes[-1]:
-        return f"h = {sizes[len(sizes) // 2] / count:.6g}"
+        return f"h = {sizes[len(sizes) // 2] / (count or 1):.6g}"
+    if not count:
+        return f"steps of at most {sizes[-1]:.6g}"
     return f"{'one step' if count == 1 else f'{count} equal steps'} from row to row"
 
 

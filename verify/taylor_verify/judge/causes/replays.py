@@ -86,7 +86,7 @@ class Steps:
     def words(self, answer: Answer) -> str:
         """Return how long the steps are."""
         if self.sizes:
-            return steps_in_words(self.sizes, 1)
+            return steps_in_words(self.sizes, 0)
         return steps_in_words(np.diff(answer.times).tolist(), self.count)
 
     def candidate(self, title: str, near: float, changes: Changes) -> Candidate:
