@@ -12,9 +12,10 @@ from scipy.integrate import solve_ivp
 from builders import integrators
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
-from taylor_verify.judge.causes.float_answer import Motion, steady_signs
+from taylor_verify.judge.causes.float_answer import Motion
 from taylor_verify.judge.causes.likely import Explained, explained
 from taylor_verify.judge.causes.material import material
+from taylor_verify.judge.causes.quaternion_rows import steady_signs
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.reason import Cause, stated

@@ -13,7 +13,7 @@ from builders.scenes import THREE_INSTANTS, text_of
 from builders.trajectories import QUATERNION, VECTORS, Columns, file_judgement, named, write_csv
 
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.causes.float_answer import steady_signs
+from taylor_verify.judge.causes.quaternion_rows import steady_signs
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.numbers.precision import exact_value

@@ -14,7 +14,8 @@ from builders.turns import by_turns
 from builders.wrong_dynamics import explained_motion
 
 from taylor_verify import exact
-from taylor_verify.judge.causes.float_answer import Motion, steady_signs
+from taylor_verify.judge.causes.float_answer import Motion
+from taylor_verify.judge.causes.quaternion_rows import steady_signs
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene

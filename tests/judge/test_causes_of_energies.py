@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 from builders.turns import by_turns
 
@@ -31,24 +32,42 @@ GENERAL = SOLID.replace(
     "coupling = [[0.1, 0, 0.05], [0, 0.2, 0], [0, 0.1, 0.15]], "
     "angular = [[2, 0, 0.2], [0, 1.5, 0], [0.2, 0, 1]] }\n",
 )
+SCALED = (
+    "clebsch = { p = 1.25, p_prime = 1.875, q = 0.125, q_prime = 0.25, r = 2.5, r_prime = 1.25 }\n"
+)
 NO_PATH = SOLID.replace(', "centre"', "")
 
 
-def of_motion(changed: str, text: str) -> tuple[Any, Any]:
+def of_motion(changed: str, text: str, has_momenta: bool = True) -> tuple[Any, Any]:
     """The judgement of the exact motion of a changed scene, and a judge of it by other scenes."""
-    own = read(text, "solid")
+    own, other = read(text, "solid"), read(changed, "changed")
     times = list(own.clock.instants)
-    motion = exact(read(changed, "changed"), times, 17).quantities.items()
-    columns = {"t": [float(t) for t in times]} | {n: v.astype(float) for n, v in motion}
-    judged = check(own, columns, tolerance=1e-8)
-    return judged, lambda scene: check(scene, columns, tolerance=1e-8)
+    motion = {n: v.astype(float) for n, v in exact(other, times, 17).quantities.items()}
+    if not has_momenta:
+        energy = np.array(other.body.energy_matrix, dtype=float)
+        momenta = [motion.pop("linear_impulse"), motion.pop("angular_impulse")]
+        linear, angular = np.split(np.hstack(momenta) @ energy, 2, axis=1)
+        motion |= {"linear_velocity": linear, "omega": angular}
+    columns = {"t": [float(t) for t in times]} | motion
+
+    def judge(scene: Scene) -> Any:
+        return check(scene, columns, tolerance=1e-8, partial=True)
+
+    return judge(own), judge
 
 
 def printed(sentence: str, text: str) -> Scene:
-    """The scene with the key that a sentence prints."""
-    key = sentence.partition("as a scene: ")[2].strip()
-    written = text[text.index("[body]") + len("[body]\n") : text.index("[initial]")]
-    return read(text.replace(written, f"{key}\n"), "printed")
+    """The scene with the keys that a sentence prints."""
+    body, _, start = sentence.partition("as a scene: ")[2].partition("; and in [initial] ")
+    written, begins = (
+        text[text.index("[body]") : text.index("[initial]")],
+        text[text.index("[initial]") :],
+    )
+    other = text.replace(written, f"[body]\n{body}\n")
+    if start:
+        keys = start.replace("; ", "\n")
+        other = other.replace(begins[: begins.index("[time]")], f"[initial]\n{keys}\n")
+    return read(other, "printed")
 
 
 @pytest.mark.parametrize(
@@ -82,24 +101,110 @@ def test_what_the_path_alone_would_tell_is_not_told_apart() -> None:
     assert "not told apart from: clebsch.p_prime = 1.4 for 1.5" in cause.sentence
 
 
+@pytest.mark.parametrize("has_momenta", [True, False])
 @pytest.mark.parametrize(
-    "changes",
+    ("changes", "words"),
     by_turns(
         [
-            [("p = 1,", "p = 1.2,"), ("p_prime = 1.5", "p_prime = 1.8")],
-            [("q = 0.1", "q = 0.12"), ("q_prime = 0.2", "q_prime = 0.22")],
-            [("p = 1,", "p = 1.1,"), ("r = 2", "r = 2.2"), ("q_prime = 0.2", "q_prime = 0.3")],
+            (
+                [("p = 1,", "p = 1.2,"), ("= 1.5", "= 1.8")],
+                "factor of clebsch.p and clebsch.p_prime",
+            ),
+            (
+                [("p = 1,", "p = 1.1,"), ("r = 2", "r = 2.2")],
+                "clebsch.p = 1.1 for 1 (+10 %), clebsch.r =",
+            ),
+            (
+                [("p = 1,", "p = 1.1,"), ("r = 2", "r = 2.2"), ("q_prime = 0.2", "q_prime = 0.3")],
+                "clebsch.q_prime = 0.3 for 0.2 (+50 %), clebsch.r = 2.2 for 2 (+10 %)",
+            ),
         ],
         2,
     ),
 )
-def test_several_coefficients_are_no_other_body_and_no_convention(
-    changes: list[tuple[str, str]],
+def test_several_coefficients_are_named_and_their_scene_passes(
+    changes: list[tuple[str, str]], words: str, has_momenta: bool
 ) -> None:
-    """A body of these momenta with another path is not named, nor is a frame that the attitude turns in."""
+    """The path tells what the impulses do not: A is known by these up to c 1 alone."""
     changed = SOLID
     for old, new in changes:
         changed = changed.replace(old, new)
-    judged, judged_by = of_motion(changed, SOLID)
-    for cause in judged.causes:
-        assert judged_by(printed(cause.sentence, SOLID)).passed
+    judged, judged_by = of_motion(changed, SOLID, has_momenta)
+    (cause,) = judged.causes
+    assert words in cause.sentence
+    assert judged_by(printed(cause.sentence, SOLID)).passed
+
+
+VEHICLE = """
+title = "A vehicle"
+model = "kirchhoff"
+track = ["attitude", "centre"]
+[body]
+mass_matrix = [
+  [3, 0, 0, 0, 0.1, 0],
+  [0, 5, 0, -0.1, 0, -0.2],
+  [0, 0, 6, 0, 0.2, 0],
+  [0, -0.1, 0, 0.3, 0, 0],
+  [0.1, 0, 0.2, 0, 0.8, 0],
+  [0, -0.2, 0, 0, 0, 0.7],
+]
+[initial]
+linear_velocity = [1.5, -0.1, 0.2]
+angular_velocity = [0.1, 0.3, 0.2]
+[time]
+end = 4
+samples = 33
+"""
+# The impulses of this start.
+IMPULSES = """linear_impulse = [4.53, -0.55, 1.26]
+angular_impulse = [0.04, 0.43, 0.16]
+"""
+VELOCITIES = VEHICLE[VEHICLE.index("linear_velocity") : VEHICLE.index("[time]")]
+BY_IMPULSES = VEHICLE.replace(VELOCITIES, IMPULSES)
+
+
+@pytest.mark.parametrize("has_momenta", [True, False])
+@pytest.mark.parametrize(
+    ("text", "simulated"),
+    by_turns(
+        [
+            (BY_IMPULSES, BY_IMPULSES),
+            (VEHICLE, VEHICLE),
+            (VEHICLE, BY_IMPULSES),
+            (BY_IMPULSES, VEHICLE),
+        ],
+        2,
+    ),
+)
+def test_another_body_starts_with_what_the_first_row_shows(
+    text: str, simulated: str, has_momenta: bool
+) -> None:
+    """It has the scene's impulses, or its velocities; what the scene does not write is printed."""
+    changed = simulated.replace("[0, 0, 6,", "[0, 0, 6.4,")
+    judged, judged_by = of_motion(changed, text, has_momenta)
+    (cause,) = judged.causes
+    assert cause.sentence.startswith("M_33 = 6.4 for 6")
+    assert ("in [initial]" in cause.sentence) == (text != simulated)
+    assert judged_by(printed(cause.sentence, text)).passed
+
+
+def test_velocities_that_are_all_too_large_are_another_start_or_a_lighter_body() -> None:
+    """A free motion in velocities tells no factor of the body: the first row does, or another start."""
+    changed = SOLID.replace(CLEBSCH, SCALED)
+    judged, _ = of_motion(changed, SOLID, has_momenta=False)
+    (cause,) = judged.causes
+    assert cause.name == "another start"
+    assert (
+        "not told apart from: factor of the mass matrix = 0.8, from the scene's momenta"
+        in cause.sentence
+    )
+
+
+def test_another_start_is_no_other_body() -> None:
+    """Velocities of the scene's body from another start have no factor, and no coefficient."""
+    judged, _ = of_motion(
+        SOLID.replace("[0.5, -0.2, 0.9]", "[0.5, -0.2, 0.8]"), SOLID, has_momenta=False
+    )
+    (cause,) = judged.causes
+    assert cause.name == "another start"
+    assert "not told apart" not in cause.sentence

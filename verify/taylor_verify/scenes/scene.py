@@ -28,7 +28,7 @@ class Scene:
     scene requires besides omega or impulse: ``attitude``, ``centre``, and ``states`` which of the states
     of its own; ``digest`` is the SHA-256 of the text; ``warnings`` are sentences about a body that no real
     solid could have; ``notes`` say how numbers were formed that the file does not write as they are (an
-    inverse, a rate in degrees).
+    inverse, a rate in degrees); the momenta of the start are so formed where it ``writes_velocities``.
     """
 
     name: str
@@ -43,6 +43,7 @@ class Scene:
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     states: frozenset[str] = frozenset()
+    writes_velocities: bool = False
 
     @property
     def times(self) -> Sequence[Fraction]:

@@ -131,7 +131,8 @@ def _changes(
     words = [_change(labels[k], right[k], values[k], errors[k]) for k in changed]
     rest = [part for part, same in zip(parts, agrees, strict=True) if same]
     if rest:
-        words.append(f"the other entries agree to {max(*rest, 2.0**-52):.0e}")
+        are_own = "are the scene's" if not any(rest) else f"agree to {max(*rest, 2.0**-52):.0e}"
+        words.append(f"the other entries {are_own}")
     return ", ".join(words)
 
 

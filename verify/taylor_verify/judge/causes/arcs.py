@@ -267,20 +267,24 @@ class Arcs(Evidence):
     def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
         """Return what each set of changed parameters leaves, (sets, n, arcs), relative to the motion.
 
-        Momenta have a further column: the first row against M nu of the scene's start.
+        Where it depends on the body there is a further column: the first row, against that of the body.
         """
         parts = [self._defects(part, steps) for part in parts_of(sets)]
         return np.concatenate(parts)
 
     @cached_property
     def compared(self) -> int:
-        """Number of components that are compared: v, and q where momenta do not tell the velocities.
+        """Number of components that are compared: v, and q and c where momenta do not tell the velocities.
 
         No step of v leads q on.
         """
         answer = self.answer
-        has_q = answer.keeps_momenta and answer.file.q is not None and answer.stepping is None
-        return answer.n + 4 * has_q
+        is_told = not (
+            answer.right.has_momenta and answer.keeps_momenta and answer.stepping is None
+        )
+        if is_told or answer.file.q is None:
+            return answer.n
+        return answer.n + (4 if answer.file.c is None else 7)
 
     @property
     def is_coarse(self) -> bool:
@@ -313,11 +317,11 @@ class Arcs(Evidence):
         )
         defects = (self.end - ends[:, :n]) / answer.sizes[:, None]
         if self.compared > n:
-            assert answer.file.q is not None
-            turned = answer.file.q[self.last].T - ends[:, n : n + 4]
-            defects = np.concatenate([defects, turned], axis=1)
+            frame = answer.states(self.compared, self.last).T[n:] - ends[:, n : self.compared]
+            frame[:, 4:] /= answer.reach
+            defects = np.concatenate([defects, frame], axis=1)
         defects = np.broadcast_to(defects, (len(sets), *defects.shape[1:]))
-        if not answer.right.has_momenta or answer.keeps_momenta or not answer.is_from_start:
+        if not answer.is_shown_at_start:
             return defects
         starts = [answer.first(changes.get("mass", answer.right.mass)) for changes in sets]
         first = (answer.file.v[0] - np.array(starts)) / answer.sizes
@@ -326,8 +330,10 @@ class Arcs(Evidence):
     @cached_property
     def rounding(self) -> Floats:
         """The rounding of the file in each component that is compared."""
-        of_q = np.full(self.compared - self.answer.n, max(self.answer.noise[1], 2.0**-50))
-        return np.concatenate([self.answer.rounding, of_q])
+        answer = self.answer
+        of_frame = np.repeat([answer.noise[1], answer.noise[2] / answer.reach], [4, 3])
+        frame = np.maximum(of_frame, 2.0**-50)[: self.compared - answer.n]
+        return np.concatenate([answer.rounding, frame])
 
 
 def row_to_row(answer: Answer) -> Arcs:

@@ -17,7 +17,7 @@ from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import Dynamics
-from taylor_verify.judge.causes.float_answer import Answer, matrices
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.in_space_axes import in_world
 from taylor_verify.judge.causes.inexact_conventions import readings
 from taylor_verify.judge.causes.kinematics import kinematics
@@ -27,6 +27,7 @@ from taylor_verify.judge.causes.other_readings import attitudes, rates, with_ome
 from taylor_verify.judge.causes.parts_of_a_run import causes_in_pieces, of_part
 from taylor_verify.judge.causes.paths import contradicts
 from taylor_verify.judge.causes.proof import are_explained, left_of_all, may_leave, whole
+from taylor_verify.judge.causes.quaternion_rows import matrices
 from taylor_verify.judge.causes.settled import PAIR
 from taylor_verify.judge.causes.spoiled_rows import are_saved_twice, wrong_rows
 from taylor_verify.judge.causes.stamps import other_times
@@ -79,7 +80,10 @@ def causes_of(answer: Answer) -> list[Cause]:
         causes = _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
         return causes or _read_from_some_row(answer)
     with suppress(Spent):
-        causes += _of_motion(answer, moving, "attitude" in left)
+        of_motion = _of_motion(answer, moving, "attitude" in left)
+        # What the motion explains with all else is no convention.
+        is_all = bool(of_motion) and are_explained(answer, of_motion[-1].leaves)
+        causes = of_motion if is_all else [*causes, *of_motion]
     return causes
 
 

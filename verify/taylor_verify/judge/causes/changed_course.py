@@ -16,13 +16,9 @@ import numpy as np
 
 from taylor_verify.judge.causes.arcs import Evidence, moved, parts_of
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.float_answer import (
-    Answer,
-    Motion,
-    steady_signs,
-    velocities_of,
-)
+from taylor_verify.judge.causes.float_answer import Answer, Motion, velocities_of
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.quaternion_rows import steady_signs
 from taylor_verify.models import own
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Instant
@@ -161,7 +157,9 @@ class Course:
 
     @property
     def row(self) -> Floats:
-        """The velocities, the attitude and the centre now, (sets, components)."""
+        """The velocities, or the momenta of a file, the attitude and the centre, (sets, components)."""
+        if self._answer.right.has_momenta:
+            return self._z[:, :, 0]
         nu = self._equations.velocities(np.array([self._now]), self._z)
         return np.concatenate([nu, self._z[:, self._equations.size :]], axis=1)[:, :, 0]
 
@@ -177,9 +175,8 @@ class Course:
 
     @property
     def v(self) -> Floats:
-        """The velocities now, or the momenta of a file of momenta, (sets, n)."""
-        nu, right = self.row[:, : self._equations.size], self._answer.right
-        return nu @ right.mass.T if right.has_momenta else nu
+        """The part of the row that the equations of motion move, (sets, n)."""
+        return self.row[:, : self._equations.size]
 
     def move(self, until: float) -> None:
         """Move to a time, and take the values of the instants up to it."""
@@ -218,11 +215,13 @@ class Course:
 
 def _start(answer: Answer, equations: Equations, loads: Loads) -> Floats:
     """Return the first states, (sets, components, 1)."""
-    nu, n = answer.start.v[0], equations.size
+    n = equations.size
     masses = equations.mass.reshape(-1, n, n)
     frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
     starts = np.array(own.starts(loads), dtype=float)
-    z = np.stack([np.concatenate([mass @ nu, *frame, starts]) for mass in masses])[:, :, None]
+    z = np.stack([np.concatenate([answer.momenta(mass), *frame, starts]) for mass in masses])[
+        :, :, None
+    ]
     z[:, :n] = _with_wheels(equations, z[:, :n], z, 0.0)
     return z
 
@@ -247,7 +246,6 @@ def _taken(equations: Equations, instant: Instant, z: Floats, values: Floats) ->
 
 
 def _motion(answer: Answer, rows: Floats) -> Motion:
-    n, right = answer.n, answer.right
-    v = rows[:, :n] @ right.mass.T if right.has_momenta else rows[:, :n]
+    n = answer.n
     q = steady_signs(rows[:, n : n + 4])
-    return Motion(v, q, rows[:, n + 4 : n + 7] if answer.file.c is not None else None)
+    return Motion(rows[:, :n], q, rows[:, n + 4 : n + 7] if answer.file.c is not None else None)

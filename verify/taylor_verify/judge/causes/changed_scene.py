@@ -11,6 +11,7 @@ import numpy as np
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.changed_texts import names_inertia, with_inertia
 from taylor_verify.judge.causes.energies import keys_of
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import places
 from taylor_verify.numbers.tensors import ZERO_VECTOR
@@ -54,6 +55,21 @@ def changed_scene(right: Equations, changes: Changes) -> str:
         for key, first in zip(("moment",) if n == 3 else ("force", "couple"), (0, 3), strict=False):
             lines[key] = _list(texts[first : first + 3])
     return "; ".join(f"{key} = {words}" for key, words in lines.items())
+
+
+def changed_start(answer: Answer, mass: Floats) -> str:
+    """Return the keys of [initial] where another body starts otherwise than the scene writes; else none."""
+    if answer.keeps_momenta == answer.writes_momenta:
+        return ""
+    momenta = answer.momenta(mass)
+    names = {3: ("omega",), 6: ("linear_velocity", "angular_velocity")}[answer.n]
+    start = answer.start.v[0]
+    if answer.keeps_momenta and answer.n == 6:
+        names, start = ("linear_impulse", "angular_impulse"), momenta
+    elif answer.keeps_momenta:
+        start = np.linalg.solve(mass, momenta)
+    parts = zip(names, start.reshape(-1, 3), strict=True)
+    return "; ".join(f"{name} = {_list(map(number, part))}" for name, part in parts)
 
 
 def _changed_entries(loads: Loads | None, other: Loads | None) -> dict[str, str]:

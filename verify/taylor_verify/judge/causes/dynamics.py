@@ -112,7 +112,7 @@ class Dynamics:
         of_texts = numbers(right.loads) if right.loads is not None else []
         return [
             *families_of_terms(right, sizes),
-            *families_of_bodies(right, sizes),
+            *families_of_bodies(self.answer, sizes),
             *families_of_energies(right),
             *(number.family(right) for number in of_texts),
             *points_of_weights(right),

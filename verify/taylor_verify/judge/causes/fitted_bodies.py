@@ -9,9 +9,11 @@ import numpy as np
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.changed_texts import names_inertia
+from taylor_verify.judge.causes.energies import coefficients
 from taylor_verify.judge.causes.fit import Family
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.other_bodies import AND_REST, is_up_to_a_factor
+from taylor_verify.judge.causes.other_bodies import AND_REST
 from taylor_verify.words.causes import with_numbers
 
 _SAME: Final = 1e-9
@@ -22,13 +24,18 @@ _NEAR: Final = 1e-6
 _ADDED: Final = {0.0: "is missing", 2.0: "is there twice", -1.0: "has the other sign"}
 
 
-def described(right: Equations, candidate: Candidate) -> tuple[str, Changes]:
+def described(answer: Answer, candidate: Candidate) -> tuple[str, Changes]:
     """Return a candidate in words, with its changes; a body has the factor that changes the least."""
-    changes = candidate.changes
+    right, changes = answer.right, candidate.changes
     if candidate.kind == "body" and candidate.count > 1:
-        mass = nearest_factor(right, changes["mass"])
-        free = ", all entries known up to one factor" * is_up_to_a_factor(right)
-        words = with_numbers(candidate.family.name + free, *entries(right.mass, mass))
+        mass, free = changes["mass"], ""
+        if answer.is_up_to_a_factor:
+            mass, free = nearest_factor(right, mass), ", all entries known up to one factor"
+        if right.energy is None or candidate.family.labels[0].startswith("M_"):
+            both = entries(right.mass, mass)
+        else:
+            both = coefficients(right.energy, mass)
+        words = with_numbers(candidate.family.name + free, *both)
         return words, {"mass": mass}
     words = structure(candidate.family, candidate.numbers)
     named = ": ".join(filter(None, (words, candidate.text)))
@@ -39,15 +46,17 @@ def described(right: Equations, candidate: Candidate) -> tuple[str, Changes]:
 
 def nearest_factor(right: Equations, mass: Floats) -> Floats:
     """Return a mass matrix, known up to a factor, with the factor that leaves most entries unchanged."""
-    if not is_up_to_a_factor(right):
-        return mass
-    own, upper = right.mass, np.triu_indices(right.size)
+    own, other = right.mass, mass
+    if right.energy is not None:
+        own, other = right.energy, np.asarray(np.linalg.inv(mass))
+    upper = np.triu_indices(len(mass))
     is_seen = np.abs(own[upper]) > _SAME * np.max(np.abs(own))
-    ratios = mass[upper][is_seen] / own[upper][is_seen]
+    ratios = other[upper][is_seen] / own[upper][is_seen]
     ratios = np.sort(ratios[ratios > _NEAR])
     apart = np.abs(ratios[:, None] / ratios - 1)
     unchanged = -np.sum(np.log(np.clip(apart, *_UNCHANGED)), axis=0)
-    return mass / ratios[int(np.argmax(unchanged))] if len(ratios) else mass
+    factor = ratios[int(np.argmax(unchanged))] if len(ratios) else 1.0
+    return mass / factor if other is mass else mass * factor
 
 
 def entries(right: Floats, mass: Floats) -> tuple[tuple[str, ...], Floats, Floats]:

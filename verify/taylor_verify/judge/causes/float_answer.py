@@ -12,8 +12,12 @@ import numpy as np
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.many_flows import Floats, flow
-from taylor_verify.models.frame import rotation
-from taylor_verify.numbers import rotation as rotations
+from taylor_verify.judge.causes.quaternion_rows import (
+    angles,
+    of_rotation_vectors,
+    product,
+    rotation_vectors,
+)
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.scene import Scene
 
@@ -285,18 +289,44 @@ class Answer:
             own_attitudes=None,
         )
 
+    @property
+    def writes_momenta(self) -> bool:
+        """True if the scene writes the momenta of its start."""
+        return self.n == 6 and not (self.scene and self.scene.writes_velocities)
+
     @cached_property
     def keeps_momenta(self) -> bool:
-        """True if the first row has the momenta of the scene; else its velocities are the scene's."""
-        own = np.abs(self.file.v[0] - self.right.mass @ self.start.v[0]) / self.sizes
-        return self.right.has_momenta and bool(np.all(own <= _SAME_START * self.rounding))
+        """True if another body starts with the scene's momenta, and not with its velocities."""
+        if not self.is_from_start:
+            return self.writes_momenta
+        nu = self.start.v[0]
+        if self.right.has_momenta:
+            off = np.abs(self.file.v[0] - self.right.mass @ nu) / self.sizes
+            return bool(np.all(off <= _SAME_START * self.rounding))
+        off = np.linalg.norm(((self.file.v[0] - nu) / self.sizes).reshape(-1, 3), axis=1)
+        return bool(np.any(off > [_SAME_START * self.roundings[name] for name in self.groups]))
+
+    @property
+    def is_shown_at_start(self) -> bool:
+        """True if the first row of a body depends on its mass matrix."""
+        return self.is_from_start and self.right.has_momenta != self.keeps_momenta
+
+    @property
+    def is_up_to_a_factor(self) -> bool:
+        """True if the motion does not show a common factor of the mass matrix."""
+        has_momenta = self.right.has_momenta or self.keeps_momenta
+        return not (self.right.has_loads or np.any(self.right.rotor) or has_momenta)
+
+    def momenta(self, mass: Floats) -> Floats:
+        """Return the first momenta of a body with this mass matrix, (n,)."""
+        return np.asarray((self.right.mass if self.keeps_momenta else mass) @ self.start.v[0])
 
     def first(self, mass: Floats) -> Floats:
-        """Return the first v of a body with this mass matrix, (..., n)."""
+        """Return the first v of a body with this mass matrix, (n,)."""
+        if self.right.has_momenta:
+            return self.momenta(mass)
         nu = self.start.v[0]
-        if not self.right.has_momenta:
-            return np.asarray(nu)
-        return np.asarray((self.right.mass if self.keeps_momenta else mass) @ nu)
+        return np.asarray(np.linalg.solve(mass, self.momenta(mass)) if self.keeps_momenta else nu)
 
     @cached_property
     def attitudes(self) -> Floats:
@@ -320,7 +350,7 @@ class Answer:
             begin = np.concatenate([self.file.v[rows].T, one])[None]
             (ends,) = flow(free.rates, begin, self.times[rows], sign * spans, 4)
             turns.append(sign * rotation_vectors(ends[self.n :].T))
-        steps = _quaternions((turns[0] + turns[1]) / 2)
+        steps = of_rotation_vectors((turns[0] + turns[1]) / 2)
         rows_ = [self.truth.q[0]]
         for step in steps:
             rows_.append(product(rows_[-1], step))
@@ -328,52 +358,6 @@ class Answer:
         return own if np.all(np.isfinite(own)) else self.truth.q
 
 
-def angles(q: Floats, other: Floats) -> Floats:
-    """Return the angle between attitudes row by row; q and -q are one attitude."""
-    apart = np.minimum(np.linalg.norm(q - other, axis=1), np.linalg.norm(q + other, axis=1))
-    return np.asarray(4 * np.arcsin(np.minimum(apart / 2, 1.0)))
-
-
-def product(p: Floats, q: Floats) -> Floats:
-    """Return the quaternion products of rows."""
-    return np.stack(rotations.product(list(p.T), list(q.T)), axis=-1)
-
-
-def conjugate(q: Floats) -> Floats:
-    return np.asarray(q * np.array([1.0, -1.0, -1.0, -1.0]))
-
-
 def velocities_of(right: Equations, rows: Floats) -> Floats:
     """Return nu of rows of v, (rows, components)."""
     return np.asarray(rows @ right.inverse.T) if right.has_momenta else rows
-
-
-def matrices(q: Floats) -> Floats:
-    """Return R(q) of rows of unit quaternions, (rows, 3, 3)."""
-    return np.array(rotation(list(q.T))).transpose(2, 0, 1)
-
-
-def rotation_vectors(q: Floats) -> Floats:
-    """Return the rotation vectors of rows of quaternions."""
-    sine = np.linalg.norm(q[:, 1:], axis=1, keepdims=True)
-    angle = 2 * np.arctan2(sine, np.abs(q[:, :1]))
-    return np.asarray(np.sign(q[:, :1]) * q[:, 1:] * angle / np.where(sine > 0, sine, 1.0))
-
-
-def _quaternions(turns: Floats) -> Floats:
-    """Return the quaternions of rotation vectors."""
-    angle = np.linalg.norm(turns, axis=1, keepdims=True)
-    return np.concatenate(
-        [np.cos(angle / 2), np.sin(angle / 2) * turns / np.where(angle > 0, angle, 1.0)], axis=1
-    )
-
-
-def steady_signs(q: Floats) -> Floats:
-    """Return unit quaternions whose signs do not jump from row to row, whatever rows are not finite."""
-    unit = np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
-    is_finite = np.all(np.isfinite(unit), axis=1)
-    own = unit[is_finite]
-    signs = np.sign(np.sum(own[1:] * own[:-1], axis=1))
-    steady = np.cumprod(np.concatenate([[1.0], np.where(signs == 0, 1.0, signs)]))
-    unit[is_finite] = own * steady[: len(own), None]
-    return unit

@@ -8,9 +8,10 @@ import numpy as np
 
 from taylor_verify.judge.causes.basis import coriolis_of
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.float_answer import Answer, Motion, matrices
+from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import may_leave, whole
+from taylor_verify.judge.causes.quaternion_rows import matrices
 
 
 def in_world(answer: Answer, omega: Floats) -> list[Cause]:

@@ -15,8 +15,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.float_answer import Answer, angles, conjugate, matrices
-from taylor_verify.judge.causes.float_answer import product as times
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.lateness import late_rows
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_frames import (
@@ -30,6 +29,8 @@ from taylor_verify.judge.causes.other_frames import (
 )
 from taylor_verify.judge.causes.paths import paths
 from taylor_verify.judge.causes.proof import LEAVES
+from taylor_verify.judge.causes.quaternion_rows import angles, conjugate, matrices
+from taylor_verify.judge.causes.quaternion_rows import product as times
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 
 # What a convention may leave, in roundings of a row; fitted numbers imitate others, as a delay a filter.

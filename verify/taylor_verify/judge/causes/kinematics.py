@@ -15,11 +15,12 @@ from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digit
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.dynamics import Search
 from taylor_verify.judge.causes.fit import Family, fault, linear
-from taylor_verify.judge.causes.float_answer import Answer, Motion, Places, angles, matrices
+from taylor_verify.judge.causes.float_answer import Answer, Motion, Places
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.many_frames import AFTER, outer, rotations, to_space
 from taylor_verify.judge.causes.other_frames import steady_rate
 from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
+from taylor_verify.judge.causes.quaternion_rows import angles, matrices
 from taylor_verify.judge.causes.replayed_methods import OF_SECOND_ORDER, UPDATES
 from taylor_verify.judge.causes.replays import Steps, replay
 from taylor_verify.judge.conventions.angle_meanings import Angles

@@ -14,7 +14,7 @@ from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.cause_search import causes_of
 from taylor_verify.judge.causes.changed_course import own_rows
-from taylor_verify.judge.causes.changed_scene import changed_scene
+from taylor_verify.judge.causes.changed_scene import changed_scene, changed_start
 from taylor_verify.judge.causes.float_answer import Answer, Places
 from taylor_verify.judge.causes.last_place import half_units
 from taylor_verify.judge.causes.many_flows import Floats
@@ -229,6 +229,9 @@ def _of_frame(answer: Answer, causes: Iterable[Cause]) -> list[Cause]:
 def _likely(cause: Cause, answer: Answer, own: Mapping[str, Floats]) -> LikelyCause:
     group = next(iter(cause.leaves), "omega")
     changed = changed_scene(answer.right, cause.changes)
+    if changed and "mass" in cause.changes and not cause.where:
+        start = changed_start(answer, cause.changes["mass"])
+        changed += f"; and in [initial] {start}" * bool(start)
     parts, errors = _left_of_states(answer, cause, own) if changed and own else ({}, {})
     all_left, all_errors = {**cause.leaves, **parts}, {**answer.worst, **errors}
     words = sentence(cause.title, all_left, all_errors, cause.alike, changed)

@@ -15,17 +15,12 @@ from taylor_verify.judge.causes.basis import basis
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.energies import as_written
-from taylor_verify.judge.causes.float_answer import (
-    Answer,
-    Motion,
-    matrices,
-    steady_signs,
-    velocities_of,
-)
+from taylor_verify.judge.causes.float_answer import Answer, Motion, velocities_of
 from taylor_verify.judge.causes.last_place import half_units
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.own_rates import ASIDE, rates_of_attitudes
 from taylor_verify.judge.causes.proof import LEAVES
+from taylor_verify.judge.causes.quaternion_rows import matrices, steady_signs
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.meanings import readings, rotations

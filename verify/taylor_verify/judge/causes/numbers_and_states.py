@@ -46,7 +46,7 @@ def in_states(answer: Answer) -> Cause | None:
     with suppress(Spent):
         cause = cause or search.cause([*search.fitted(_written(answer))])
         sizes = Sizes.of(answer)
-        families = [*families_of_terms(right, sizes), *families_of_bodies(right, sizes)]
+        families = [*families_of_terms(right, sizes), *families_of_bodies(answer, sizes)]
         families += families_of_energies(right)
         one = [each for each in families if each.count == 1 and each.kind != "clock"]
         cause = cause or search.cause([*search.fitted(one)])

@@ -12,6 +12,7 @@ import numpy as np
 from taylor_verify.judge.causes.basis import EPSILON, coriolis, coriolis_of
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.terms import load_names
 
@@ -180,10 +181,11 @@ def _entry(right: Equations, i: int, k: int) -> Floats:
 # Families.
 
 
-def families_of_bodies(right: Equations, sizes: Sizes) -> Iterator[Family]:
+def families_of_bodies(answer: Answer, sizes: Sizes) -> Iterator[Family]:
     """Yield the families of mass matrices: a factor, entries, diagonals, another centre of mass, all."""
+    right = answer.right
     n, mass = right.size, right.mass
-    if not is_up_to_a_factor(right):
+    if not answer.is_up_to_a_factor:
         noun = "inertia" if n == 3 else "mass matrix"
         yield linear(right, f"factor of the {noun}", "body", 1.0, [1], mass=mass[None])
     scale = np.outer(sizes.inertia, sizes.inertia)
@@ -193,7 +195,7 @@ def families_of_bodies(right: Equations, sizes: Sizes) -> Iterator[Family]:
         if n == 3 or i == k or mass[i, k]:
             yield from _each(right, _label(n, i, k), _of_entries(mass, scale, [(i, k)]))
     # A free motion does not show a common factor.
-    lacks = 1 if is_up_to_a_factor(right) and not right.damping else 0
+    lacks = 1 if answer.is_up_to_a_factor and not right.damping else 0
     if n == 3:
         for of_body, of_term, places in (
             ("moments of inertia", "moments of inertia", diagonal),
@@ -364,8 +366,3 @@ def _of_arm(mass: Floats, scale: float) -> list[_Number]:
         value = float(np.sum(along * mass)) / 4
         numbers.append(_Number(f"m r_{i + 1}", value, scale, along))
     return numbers
-
-
-def is_up_to_a_factor(right: Equations) -> bool:
-    """Return True if a motion does not show a common factor of the mass matrix."""
-    return not (right.has_loads or np.any(right.rotor) or right.has_momenta)

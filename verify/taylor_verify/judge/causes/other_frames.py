@@ -6,14 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.float_answer import (
-    Answer,
-    conjugate,
-    matrices,
-    product,
-    velocities_of,
-)
+from taylor_verify.judge.causes.float_answer import Answer, velocities_of
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.quaternion_rows import conjugate, matrices, product
 
 NEAR: Final = 1e-2
 # A body turns steadily to this part; the error of a method is slower than this part of its rate.

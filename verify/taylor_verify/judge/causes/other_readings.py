@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from taylor_verify.judge.causes.float_answer import Answer, conjugate, matrices, steady_signs
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.inexact_conventions import FACTORS, SIGNED, axes
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.quaternion_rows import conjugate, matrices, steady_signs
 
 
 def with_omega(answer: Answer, rows: Floats) -> Answer:

@@ -10,8 +10,8 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.float_answer import conjugate, product, rotation_vectors
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.quaternion_rows import conjugate, product, rotation_vectors
 
 # Rows to either side, without which a row has no rate.
 ASIDE: Final = 4

@@ -58,6 +58,7 @@ _PROVEN: Final = 6
 # So few numbers are printed with as few digits as explain as much.
 FEW: Final = 3
 _DIGITS: Final = (2, 3, 4, 6, 17)
+_DIGITS_OF_MANY: Final = (3, 5)
 # Bodies whose entries agree to this part are one.
 _SAME_BODY: Final = 1e-6
 # A number so small beside the scale of its family is none, if the motion is as near without it.
@@ -307,7 +308,7 @@ class Choice:
         proven = [*filter(self._explains_frame, proven)] or proven
         # Some say nothing of the path, and others say a wrong one.
         proven = [p for p in proven if max(p.leaves.values()) <= CAPS[0]] or proven
-        proven.sort(key=lambda each: _simplest(each.candidate))
+        proven.sort(key=lambda each: (each.candidate.count, each.candidate.defects))
         as_well = self._as_well(proven[0].candidate)
         alike = [p for p in proven if p.candidate.defects <= as_well]
         alike = self._by_frame(alike)
@@ -315,9 +316,9 @@ class Choice:
         alike.sort(key=lambda each: self._nearness(each.candidate))
         first, shortened = alike[0], self._shortened(alike[0])
         best = shortened.candidate
-        text, changes = described(self.answer.right, best)
+        text, changes = described(self.answer, best)
         others = dict.fromkeys(
-            described(self.answer.right, each.candidate)[0]
+            described(self.answer, each.candidate)[0]
             for each in alike[1:]
             if not _are_same(each.candidate.changes, first.candidate.changes)
         )
@@ -357,11 +358,12 @@ class Choice:
         is_none = np.all(np.abs(numbers) <= _NO_NUMBER[1] * family.scale)
         as_much = proven.worst / BETTER if is_none else 2 * proven.worst
         allowed = max(as_much, self._least / ROUNDINGS, NOTHING)
-        if not 0 < family.count <= FEW:
-            return proven
-        sets = [np.where(np.abs(numbers) > e * family.scale, numbers, 0.0) for e in _NO_NUMBER]
-        for digits, large in product(_DIGITS, sets):
-            shorter = np.array([float(f"{x:.{digits}g}") for x in large])
+        is_own = np.abs(numbers - family.right) <= _NO_NUMBER[1] * family.scale
+        few = (_DIGITS, _NO_NUMBER) if family.count <= FEW else (_DIGITS_OF_MANY, _NO_NUMBER[1:])
+        for digits, least in product(*few) if family.count else ():
+            large = np.where(np.abs(numbers) > least * family.scale, numbers, 0.0)
+            rounded = np.array([float(f"{x:.{digits}g}") for x in large])
+            shorter = np.where(is_own, family.right, rounded)
             short = replace(candidate, numbers=shorter)
             with suppress(Spent, ValueError):
                 left = self._left(short)
@@ -371,17 +373,18 @@ class Choice:
                 return replace(proven, candidate=short)
         return proven
 
-    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool, bool, bool, int]:
+    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool, bool, bool, bool, int]:
         """Return how far a candidate is from the text of the scene: one without a number is nearer.
 
-        What the scene does not have is farther, and a clock, which no equation has. Of two numbers the one
-        with fewer digits is nearer.
+        What the scene does not have is farther, and a clock, which no equation has, and a factor of more
+        than one of its numbers. Of two numbers the one with fewer digits is nearer.
         """
-        has_number = " = " in described(self.answer.right, candidate)[0]
+        has_number = " = " in described(self.answer, candidate)[0]
         is_written, is_clock = candidate.kind == WRITTEN, candidate.kind == "clock"
         is_new = bool(candidate.count) and not np.any(candidate.family.right)
         digits = sum(len(f"{number:.6g}") for number in candidate.numbers)
-        return candidate.count, not is_written, is_new, has_number, is_clock, digits
+        is_factor = not candidate.family.labels
+        return candidate.count, not is_written, is_new, has_number, is_clock, is_factor, digits
 
 
 def _short(numbers: Floats) -> Floats:
@@ -394,7 +397,3 @@ def _are_same(changes: Changes, other: Changes) -> bool:
     return is_of_numbers and all(
         np.allclose(changes[name], other[name], rtol=_SAME_BODY, atol=0.0) for name in changes
     )
-
-
-def _simplest(candidate: Candidate) -> tuple[int, float]:
-    return candidate.count, candidate.defects

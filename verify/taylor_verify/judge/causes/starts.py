@@ -124,7 +124,20 @@ def _from_a_row(answer: Answer, first: int) -> Cause | None:
         )
         return Cause(name, "jump at the start", leaves)
     name = "another start: from the file's own first row the motion is exact"
-    return Cause(name, "own start", leaves)
+    return Cause(name, "own start", leaves, alike=_factor(answer))
+
+
+def _factor(answer: Answer) -> tuple[str, ...]:
+    """Return the factor of the body that starts in the first row by the scene's momenta, if one does."""
+    right, own, nu = answer.right, answer.file.v[0], answer.start.v[0]
+    if right.has_momenta or right.has_loads or np.any(right.rotor) or not own @ nu > 0:
+        return ()
+    factor = float(nu @ nu / (own @ nu))
+    off = np.abs(own - nu / factor) / answer.sizes
+    if np.any(off > _OFF * answer.rounding):
+        return ()
+    noun = "inertia" if answer.n == 3 else "mass matrix"
+    return (f"factor of the {noun} = {factor:.6g}, from the scene's momenta",)
 
 
 def _leaves(answer: Answer, begins: list[int], is_off: bool) -> dict[str, float] | None:

@@ -116,6 +116,7 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     own, doubts = states.names, states.doubts
     track = _track(top, model, own)
     body, loads = _body_and_loads(top, model, states.states) if model else _unread(top)
+    writes_velocities = not set(VELOCITIES).isdisjoint(top.peek_keys("initial"))
     motion, initial = _motion_and_start(top, model, body) if model else (None, None)
     time = _part(top, "time", clock, model)
     if model is None:
@@ -142,6 +143,7 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
         digest=hashlib.sha256(text.encode()).hexdigest(),
         warnings=warnings(body),
         notes=tuple(faults.notes),
+        writes_velocities=writes_velocities,
     )
 
 

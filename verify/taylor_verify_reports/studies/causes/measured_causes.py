@@ -14,9 +14,10 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.batch.work import run_all
-from taylor_verify.judge.causes.float_answer import Motion, steady_signs
+from taylor_verify.judge.causes.float_answer import Motion
 from taylor_verify.judge.causes.likely import explained
 from taylor_verify.judge.causes.material import material, material_of_attitudes
+from taylor_verify.judge.causes.quaternion_rows import steady_signs
 from taylor_verify.judge.judgement import unjudged
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
