@@ -24,6 +24,8 @@ from taylor_verify.scenes.scene import Scene
 Floats = np.ndarray[Any, Any]
 
 _VELOCITIES: Final = ("u1", "u2", "u3", "w1", "w2", "w3")
+# Ways in which many times are spread over pieces, of which the parts are kept.
+_MOST_PARTS: Final = 64
 _FRAME: Final = frozenset((*ROTATION, *QUATERNION))
 # From the q of a state, whose length a method may let drift, the q that texts read, and R.
 Frame = Callable[[Sequence[Any]], tuple[Sequence[Any], Sequence[Sequence[Any]]]]
@@ -51,6 +53,7 @@ class Acting:
         self._is_euler = scene.model == "euler"
         self._matrix = np.array(scene.body.energy_matrix, dtype=float)
         self._codes: dict[tuple[str, Fraction | None, bool], _Code] = {}
+        self._known_parts: dict[tuple[str, bytes], list[tuple[_Code, Any, Floats]]] = {}
 
     def of(self, loads: Loads) -> Acting:
         """Return other loads of the same scene."""
@@ -93,8 +96,8 @@ class Acting:
         return after
 
     @cached_property
-    def _switches(self) -> list[float]:
-        return [_not_before(switch) for switch in self.written.switches]
+    def _switches(self) -> Floats:
+        return np.array([_not_before(switch) for switch in self.written.switches])
 
     def _reach(self, first: float, last: float) -> None:
         """Make the stairs of floor known as far as these times: a solver may look beyond the samples."""
@@ -105,6 +108,7 @@ class Acting:
         if wider is not self.written:
             self.written = wider
             vars(self).pop("_switches", None)
+            self._known_parts.clear()
 
     def _values(
         self, which: str, t: Any, state: Any, held: Any, inside: Fraction | None = None
@@ -124,20 +128,46 @@ class Acting:
         if held is not None:
             held = np.broadcast_to(held, (*elapsed.shape, held.shape[-1]))
         self._reach(float(elapsed.min()), float(elapsed.max()))
-        pieces = np.searchsorted(self._switches, elapsed, side="right")
+        times, states = elapsed.ravel(), state.reshape(elapsed.size, -1)
+        own = None if held is None else held.reshape(elapsed.size, held.shape[-1])
+        pieces = np.searchsorted(self._switches, times, side="right")
         if inside is not None or pieces.min() == pieces.max():
-            flat = None if held is None else held.reshape(elapsed.size, held.shape[-1])
-            part = self._at(which, elapsed.ravel(), state.reshape(elapsed.size, -1), flat, inside)
-            return part.reshape(*elapsed.shape, part.shape[-1])
-        values: Floats | None = None
-        for piece in np.unique(pieces):
-            rows = pieces == piece
-            part = self._at(which, elapsed[rows], state[rows], None if held is None else held[rows])
-            if values is None:
-                values = np.empty((*elapsed.shape, part.shape[-1]))
-            values[rows] = part
-        assert values is not None
-        return values
+            values = self._at(which, times, states, own, inside)
+        else:
+            parts = self._parts(which, pieces)
+            made = [
+                self._evaluated(
+                    code, times[rows], states[rows], None if own is None else own[rows], numbers
+                )
+                for code, rows, numbers in parts
+            ]
+            values = np.empty((elapsed.size, made[0].shape[-1]))
+            for (_, rows, _), part in zip(parts, made, strict=True):
+                values[rows] = part
+        return values.reshape(*elapsed.shape, values.shape[-1])
+
+    def _parts(self, which: str, pieces: Floats) -> list[tuple[_Code, Any, Floats]]:
+        """Return each code that pieces have but for the numbers in it, its rows, and the numbers of each.
+
+        The pieces of a table differ in nothing else. Steps of a method ask for the same ones many times.
+        """
+        key = which, pieces.tobytes()
+        if key not in self._known_parts:
+            codes = {
+                piece: self._code(which, self.written.numbered(piece), is_one=False)
+                for piece in np.unique(pieces).tolist()
+            }
+            own = [codes[piece] for piece in pieces.tolist()]
+            texts = np.array([code.text for code in own])
+            parts = list[tuple[_Code, Any, Floats]]()
+            for text in dict.fromkeys(texts.tolist()):
+                rows = np.flatnonzero(texts == text)
+                numbers = np.array([own[row].numbers for row in rows]).T
+                parts.append((own[rows[0]], rows, numbers))
+            if len(self._known_parts) >= _MOST_PARTS:
+                self._known_parts.clear()
+            self._known_parts[key] = parts
+        return self._known_parts[key]
 
     def _at(
         self,
@@ -148,15 +178,22 @@ class Acting:
         inside: Fraction | None = None,
     ) -> Floats:
         is_one = state.ndim == 1
-        columns = state.tolist() if is_one else list(state.T)
         first = elapsed if is_one else elapsed[0]
         piece = self.written.piece(exact_value(first) if inside is None else inside)
         code = self._code(which, piece, is_one)
+        return self._evaluated(code, elapsed, state, held, code.numbers)
+
+    def _evaluated(
+        self, code: _Code, elapsed: Any, state: Floats, held: Floats | None, numbers: Any
+    ) -> Floats:
+        """Return the values of a code whose numbers may be others for each of many states."""
+        is_one = state.ndim == 1
+        columns = state.tolist() if is_one else list(state.T)
         inputs = self._inputs(elapsed, columns, code.names) | self._held(held, is_one)
         if missing := code.names - inputs.keys():
             raise ValueError(f"expected the held values {', '.join(sorted(missing))}, got none")
         with np.errstate(all="ignore") if code.chooses else nullcontext():
-            values = code.function(**{name: inputs[name] for name in code.names})
+            values = code.function(numbers, **{name: inputs[name] for name in code.names})
         return (
             np.array(values, dtype=float)
             if is_one
@@ -211,43 +248,52 @@ def _not_before(time: Fraction) -> float:
 
 
 class _Code(NamedTuple):
-    """A function from inputs by name to values, and the names that it reads.
+    """A function from numbers, and inputs by name, to values, and the names that it reads.
 
     One that ``chooses`` has a step that takes one of two values, of which the other need not exist.
+    ``text`` is its own, in which the ``numbers`` do not stand.
     """
 
     function: Callable[..., list[Any]]
     names: frozenset[str]
     chooses: bool
+    numbers: tuple[float, ...]
+    text: str
 
 
 @lru_cache(maxsize=256)
 def _compiled(steps: tuple[Step, ...], outputs: tuple[int, ...], is_one: bool) -> _Code:
     """Return the function from the inputs of one state, or of many, to the values at some places."""
     chooses = any(step.operation == "choose" for step in steps)
-    # Floats would raise an error for the value that is not chosen.
-    known: dict[str, Any] = dict(FLOATS if is_one and not chooses else functions_of(np.empty(0)))
-    names = set[str]()
-    lines: list[str] = []
+    names, numbers, lines = set[str](), list[float](), list[str]()
     for place in needed(steps, outputs):
         step = steps[place]
         operands = [f"k{operand}" for operand in step.operands]
         if step.operation == "number":
-            known[f"k{place}"] = float(step.number or 0)
-            continue
-        if step.operation == "power":
-            known[f"e{place}"] = float(step.number or 0)
-            operands.append(f"e{place}")
-        if step.operation == "input":
+            number = float(step.number or 0)
+            text = repr(number) if is_one else f"numbers[{len(numbers)}]"
+            numbers.append(number)
+        elif step.operation == "input":
             text = f"in_{step.name}"
             names.add(step.name)
         elif step.operation in ("+", "-", "*", "/"):
             text = f" {step.operation} ".join(operands)
         else:
-            text = f"{step.operation}({', '.join(operands)})"
+            exponent = [repr(float(step.number or 0))] * (step.operation == "power")
+            text = f"{step.operation}({', '.join(operands + exponent)})"
         lines.append(f" k{place} = {text}")
     results = ", ".join(f"k{output}" for output in outputs)
-    head = ["def loads(**inputs):", *(f" in_{name} = inputs['{name}']" for name in sorted(names))]
-    # The text is made of the names of the scene and the grammar, of k0, e0, ... and of + - * / alone.
-    exec("\n".join([*head, *lines, f" return [{results}]"]), known)
-    return _Code(known["loads"], frozenset(names), chooses)
+    inputs = (f" in_{name} = inputs['{name}']" for name in sorted(names))
+    text = "\n".join(["def loads(numbers, **inputs):", *inputs, *lines, f" return [{results}]"])
+    # Floats would raise an error for the value that is not chosen.
+    function = _made(text, has_floats=is_one and not chooses)
+    return _Code(function, frozenset(names), chooses, tuple(numbers), text)
+
+
+@lru_cache(maxsize=256)
+def _made(text: str, has_floats: bool) -> Callable[..., list[Any]]:
+    """Return the function of a text: the names of the scene and the grammar, k0, ... and + - * / alone."""
+    known: dict[str, Any] = dict(FLOATS if has_floats else functions_of(np.empty(0)))
+    exec(text, known)
+    made: Callable[..., list[Any]] = known["loads"]
+    return made

@@ -17,7 +17,7 @@ from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import Dynamics
-from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.float_answer import Answer, Places
 from taylor_verify.judge.causes.in_space_axes import in_world
 from taylor_verify.judge.causes.inexact_conventions import readings
 from taylor_verify.judge.causes.kinematics import kinematics
@@ -44,6 +44,9 @@ _OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at res
 _AT_ONCE: Final = 0.03
 # The truth has left the start if it is so many roundings of the file away.
 _LEFT: Final = 30.0
+# So many arcs over a switch are no single switch that comes late.
+_SEVERAL: Final = 3
+_MOST_WRONG: Final = 0.75
 
 
 def causes_of(answer: Answer) -> list[Cause]:
@@ -165,12 +168,25 @@ def _of_moving_part(answer: Answer) -> list[Cause]:
         wrong = starts.wrong_arcs(defects)
         has_parts = len(answer.right.switches) > 0 or bool(bounds(answer.right.loads))
         is_part = has_parts and 0 < 2 * len(wrong) < len(defects)
-        causes = _some(in_numbers(answer, wrong)) if is_part else []
+        causes = _some(_over_switches(answer, search, wrong)) if is_part else []
+        causes = causes or (_some(in_numbers(answer, wrong)) if is_part else [])
         causes = causes or causes_in_pieces(answer, defects, causes_of) or _some(search.cause())
         return causes or _from_own_start(answer)
     with suppress(Spent):
         return _some(search.cause() or simple)
     return [simple]
+
+
+def _over_switches(answer: Answer, search: Dynamics, wrong: Places) -> Cause | None:
+    """Return the method whose steps go over the switches, where each of several wrong arcs has one."""
+    times, switches = answer.times, answer.right.switches
+    ends = np.sort([times[wrong], times[wrong + 1]], axis=0)
+    count = np.searchsorted(switches, ends[1], side="right") - np.searchsorted(switches, ends[0])
+    if len(wrong) < _SEVERAL or np.mean(count > 0) < _MOST_WRONG:
+        return None
+    with answer.budget.share(1 / 4):
+        return search.of_steps()
+    return None
 
 
 def _from_own_start(answer: Answer) -> list[Cause]:

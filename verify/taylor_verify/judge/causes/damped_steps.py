@@ -18,7 +18,8 @@ from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.replayed_methods import METHODS, Method
-from taylor_verify.judge.causes.replays import Steps, in_steps, moved_by, nearest_count
+from taylor_verify.judge.causes.replays import nearest_count
+from taylor_verify.judge.causes.stepped_arcs import Steps, in_steps, moved_by
 from taylor_verify.judge.causes.terms import faults_of_terms
 
 _MOST: Final = 60

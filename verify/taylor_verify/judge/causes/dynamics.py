@@ -40,8 +40,9 @@ from taylor_verify.judge.causes.other_bodies import (
 )
 from taylor_verify.judge.causes.pairs import Linear, likely_pairs, pairs_with_a_fault
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, ROUNDINGS, whole
-from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
+from taylor_verify.judge.causes.replays import replays, steps_beside
 from taylor_verify.judge.causes.settled import FAIR, FEW, FIT_ROWS, NOTHING, PAIR, Choice
+from taylor_verify.judge.causes.stepped_arcs import stepped
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers, points_of_weights
@@ -91,6 +92,10 @@ class Dynamics:
     def cause(self) -> Cause | None:
         """Return the proven cause, with all others that explain as well."""
         return self._search.by_arcs(self._faults, self._families, self._arcs[1])
+
+    def of_steps(self) -> Cause | None:
+        """Return the proven method of one step."""
+        return self._search.cause(replays(self.answer, min(self._arcs[1], _LONGEST)))
 
     @cached_property
     def _arcs(self) -> tuple[Arcs, int]:

@@ -16,7 +16,8 @@ from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.held_loads import without_texts
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.replayed_methods import METHODS, Method
-from taylor_verify.judge.causes.replays import LEAVES, best_steps
+from taylor_verify.judge.causes.replays import LEAVES
+from taylor_verify.judge.causes.stepped_arcs import best_steps
 from taylor_verify.scenes.instants import evenly
 
 # So many rows have the largest length, to so many roundings of the file.

@@ -22,7 +22,7 @@ from taylor_verify.judge.causes.other_frames import steady_rate
 from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
 from taylor_verify.judge.causes.quaternion_rows import angles, matrices
 from taylor_verify.judge.causes.replayed_methods import OF_SECOND_ORDER, UPDATES
-from taylor_verify.judge.causes.replays import Steps, replay
+from taylor_verify.judge.causes.stepped_arcs import Steps, replay
 from taylor_verify.judge.conventions.angle_meanings import Angles
 from taylor_verify.words.causes import steps_in_words
 

@@ -26,7 +26,7 @@ from taylor_verify.judge.causes.material import (
 from taylor_verify.judge.causes.missing_load import missing_load
 from taylor_verify.judge.causes.plugged import plugged_causes
 from taylor_verify.judge.causes.proof import may_leave
-from taylor_verify.judge.causes.replays import stepped
+from taylor_verify.judge.causes.stepped_arcs import stepped
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem

@@ -17,12 +17,11 @@ import numpy as np
 from taylor_verify.judge.causes import held_loads
 from taylor_verify.judge.causes.arcs import FEW, Arcs, some_arcs
 from taylor_verify.judge.causes.candidate import Candidate
-from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.fit import across, fault, orthonormal
-from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.changed_equations import Changes
+from taylor_verify.judge.causes.fit import across, orthonormal
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.methods_with_memory import never_of_unit_length, with_memory
-from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.replayed_methods import (
     METHODS,
     OF_MOMENTUM,
@@ -30,10 +29,13 @@ from taylor_verify.judge.causes.replayed_methods import (
     Method,
     as_it_is,
     with_frames,
-    with_unit_attitude,
     with_updates,
 )
-from taylor_verify.words.causes import steps_in_words
+from taylor_verify.judge.causes.stepped_arcs import (
+    Steps,
+    in_steps,
+    moved_by,
+)
 
 # A replay leaves at most this part of the defects, or so many roundings; they are this many at least.
 LEAVES: Final = 0.02
@@ -48,6 +50,7 @@ _FEWEST: Final = 2
 _FINE: Final = 16
 _FINE_OF_DEAR: Final = 4
 _MUCH_FINER: Final = 2
+_FEWER: Final = 4
 _MOST: Final = 200
 _MOST_OF_DEAR: Final = 128
 # What a method leaves of the defects to first order, alone and beside a fault, and how small its part is.
@@ -57,6 +60,12 @@ _SLIGHT: Final = 1e-3
 # Of each method the best fits beside a fault give its numbers of steps; some methods are tried.
 _FITS: Final = 4
 _METHODS: Final = 3
+# Numbers of steps that are tried where the arcs without a switch are too exact to tell any.
+_COUNTS: Final = (1, 2, 4, 10)
+# A switch at the end of an arc is no farther from it than by this part.
+_AT_END: Final = 1e-9
+# This part of the work is for replays, and the rest for proofs.
+_TO_REPLAY: Final = 0.75
 # Of so many rows from the start.
 _FIRST: Final = 12
 # Words that programs look for.
@@ -65,75 +74,6 @@ _WORDS: Final = {
     "backward Euler": "implicit gyroscopic step: backward Euler",
     "one Newton step of backward Euler": "implicit gyroscopic step: one Newton step of backward Euler",
 }
-
-
-@dataclass(frozen=True)
-class Steps:
-    """A method with its number of steps from row to row, and the part of the defects that it leaves.
-
-    ``sizes`` are those of the steps where they end at other times than the rows too.
-    """
-
-    name: str
-    method: Method
-    count: int
-    left: float
-    sizes: tuple[float, ...] = ()
-
-    def step(self, answer: Answer) -> float:
-        return answer.spacing / self.count
-
-    def words(self, answer: Answer) -> str:
-        """Return how long the steps are."""
-        if self.sizes:
-            return steps_in_words(self.sizes, 0)
-        return steps_in_words(np.diff(answer.times).tolist(), self.count)
-
-    def candidate(self, title: str, near: float, changes: Changes) -> Candidate:
-        """Return the steps as a candidate, of a changed scene if there are ``changes``."""
-        of_steps, motion = fault(title, "method", changes), partial(motion_of_steps, self)
-        return Candidate(of_steps, of_steps.right, self.left, motion, near, self)
-
-
-def best_steps(arcs: Arcs, tried: Iterable[tuple[str, Method, int]]) -> Steps:
-    """Return the steps, of some methods by name with numbers of steps, that leave the least."""
-    every = (Steps(name, method, n, _left_by(arcs, method, n)) for name, method, n in tried)
-    return min(every, key=lambda steps: steps.left)
-
-
-def _left_by(arcs: Arcs, method: Method, count: int) -> float:
-    """Return the part of the defects that so many steps from row to row leave."""
-    left = float(np.linalg.norm(in_steps(arcs, method, count).defects([{}]))) / arcs.size
-    return left if np.isfinite(left) else np.inf
-
-
-def replay(
-    answer: Answer,
-    method: Method,
-    steps: int,
-    equations: Equations,
-    v: Floats,
-    since: Floats,
-    spans: Floats,
-) -> Floats:
-    """Return v after the spans, each in so many steps."""
-    if method.frame is not None:
-        equations = equations.framed(method.frame)
-    h = spans / steps
-    v = np.broadcast_to(v, (max(len(v), equations.sets), *v.shape[1:]))
-    price = equations.price(v.shape[1], len(v) * v.shape[2])
-    answer.budget.spend(steps * (method.evaluations or method.order) * price)
-    for k in range(steps):
-        v = method.step(equations, since + k * h, v, h)
-        if v.shape[1] > answer.n:
-            v = with_unit_attitude(v, answer.n)
-    return v
-
-
-def in_steps(arcs: Arcs, method: Method, steps: int) -> Arcs:
-    """Return arcs that go in so many steps of a method."""
-    own = replace(arcs.answer, stepping=partial(replay, arcs.answer, method, steps))
-    return replace(arcs, answer=own, steps_given=1)
 
 
 def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
@@ -157,7 +97,11 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
         late = held_loads.late_methods(acting) if acting else {}
         more = {**late, **with_memory(answer.right)}
         tried += [] if beyond is None else [beyond.steps(more, _ALONE)]
-    for steps in _with_drift(answer, _each_best(chain(*tried)), replayed.floor):
+    every = list[Steps]()
+    with answer.budget.share(_TO_REPLAY):
+        for steps in chain(*tried):
+            every.append(steps)
+    for steps in _with_drift(answer, _each_best(every), replayed.floor):
         near = LEAVES if steps.method.run is None else _NEARLY
         if steps.left < max(near, ROUNDINGS * replayed.floor):
             h = steps.step(answer)
@@ -247,7 +191,7 @@ def nearest_count(
     return best
 
 
-def _each_best(steps: Iterator[Steps]) -> list[Steps]:
+def _each_best(steps: Iterable[Steps]) -> list[Steps]:
     """Return the best steps of each method, the best of all first."""
     best = dict[str, Steps]()
     for each in sorted(steps, key=lambda each: each.left):
@@ -307,11 +251,16 @@ class _Replays:
         """Yield each place with numbers of steps by which the error of the method is about the defects.
 
         Much finer steps than those measured are measured once more: the first-order term alone misses them.
+        So are fewer steps, where the error of those measured is lost in the rounding.
         """
         for place, (own, rest) in enumerate(zip(defects, rests, strict=True)):
-            counts = self._counts(method, place, own, own - rest, near, _fine(method))
+            fine, error = _fine(method), own - rest
+            while self._is_rounding(error) and fine > self.stride:
+                fine = max(self.stride, fine // _FEWER)
+                error = own - self._stepped(method, fine, [self.sets[place]])[0]
+            counts = self._counts(method, place, own, error, near, fine)
             steps = counts[0] * self.stride if counts else 0
-            if _MUCH_FINER * _fine(method) < steps <= self._most(method):
+            if _MUCH_FINER * fine < steps <= self._most(method):
                 (finer,) = self._stepped(method, steps, [self.sets[place]])
                 counts = self._counts(method, place, own, own - finer, near, steps) or counts
             if some := [max(1, count) for count in counts if count <= self._most(method) + 1]:
@@ -321,18 +270,39 @@ class _Replays:
         self, method: Method, place: int, defects: Floats, error: Floats, near: float, steps: int
     ) -> list[int]:
         """Return the numbers of steps from row to row, best first, by the error of so many in an arc."""
-        parts = list[tuple[float, float]]()
+        smooth, parts = self._smooth, list[tuple[float, float]]()
+        of_right = self._compared(self.arcs.of_right[None])[0]
+        if self._is_rounding(of_right):
+            return [*_COUNTS]
+        whole = float(np.linalg.norm(smooth * of_right))
         for basis in self._beside(place):
-            beyond = across(basis, error)
+            beyond = across(basis, smooth * error)
             size = float(beyond @ beyond)
             if not 0 < size < np.inf:
                 continue
-            part = float(beyond @ defects) / size
-            left = float(np.linalg.norm(across(basis, defects) - part * beyond)) / self.size
-            if part > 0 and left < near and part * size**0.5 > _SLIGHT * self.size:
+            part = float(beyond @ (smooth * defects)) / size
+            left = float(np.linalg.norm(across(basis, smooth * defects) - part * beyond)) / whole
+            if part > 0 and left < near and part * size**0.5 > _SLIGHT * whole:
                 parts.append((left, part))
         some = [round(steps / self.stride * p ** (-1 / method.order)) for _, p in sorted(parts)]
         return some[:_FITS]
+
+    def _is_rounding(self, defects: Floats) -> bool:
+        """Return True if the defects of the smooth arcs are no more than some roundings of the file."""
+        return float(np.linalg.norm(self._smooth * defects)) < _CLEAR * self.floor * self.size
+
+    @cached_property
+    def _smooth(self) -> Floats:
+        """1 for each entry of an arc in which no load switches, and else 0; beside families all are 1.
+
+        Steps over a switch, or up to it, leave an error that does not end as h^p.
+        """
+        arcs, n = self.arcs, self.arcs.answer.n
+        begin, end = np.sort([arcs.since, arcs.since + arcs.spans], axis=0)
+        at_end, switches = _AT_END * (end - begin), arcs.answer.right.switches
+        count = np.searchsorted(switches, end + at_end) - np.searchsorted(switches, begin + at_end)
+        is_smooth = count == 0 if len(switches) and not self.bases else np.ones(len(begin))
+        return np.tile(is_smooth.astype(float), n)
 
     def _beside(self, place: int) -> Sequence[Floats]:
         none = np.zeros((self.arcs.answer.n * len(self.arcs.first), 0))
@@ -349,41 +319,3 @@ class _Replays:
 
 def _fine(method: Method) -> int:
     return _FINE_OF_DEAR if method.is_dear else _FINE
-
-
-def motion_of_steps(steps: Steps, answer: Answer, _: Changes) -> Motion | None:
-    """Return the motion of an answer in steps from each row to the next one."""
-    return moved_by(steps, steps.step(answer), answer, answer.right)
-
-
-def moved_by(steps: Steps, h: float, answer: Answer, equations: Equations) -> Motion | None:
-    """Return the motion of the equations in steps of h."""
-    frame = 7 if answer.file.c is not None else 4 * (answer.file.q is not None)
-    components = max(equations.coupled, answer.n + frame * steps.method.has_frame)
-    if steps.method.run is not None:
-        motion: Motion = steps.method.run(answer, equations, h, components)
-        return motion
-    return whole(with_steps(answer, steps.method, h), equations, components)
-
-
-def stepped(answer: Answer, steps: Steps) -> Answer:
-    """Return the answer with arcs that are stepped from row to row."""
-    return with_steps(answer, steps.method, steps.step(answer))
-
-
-def with_steps(answer: Answer, method: Method, h: float) -> Answer:
-    """Return the answer with arcs that are stepped by h, or a little less or more so that they end."""
-
-    def ends(equations: Equations, begin: Floats, since: Floats, spans: Floats) -> Floats:
-        counts = np.maximum(1, np.rint(np.abs(spans) / h)).astype(int)
-        parts = []
-        for count in np.unique(counts):
-            some = counts == count
-            own = begin[:, :, some], since[some], spans[some]
-            parts.append((some, replay(answer, method, int(count), equations, *own)))
-        out = np.empty((*parts[0][1].shape[:2], len(spans)))
-        for some, each in parts:
-            out[:, :, some] = each
-        return out
-
-    return replace(answer, stepping=ends)

@@ -25,14 +25,8 @@ from taylor_verify.judge.causes.replayed_methods import (
     explicit_with_updates,
     with_frames,
 )
-from taylor_verify.judge.causes.replays import (
-    LEAVES,
-    ROUNDINGS,
-    Steps,
-    name_of_steps,
-    nearest_count,
-    with_steps,
-)
+from taylor_verify.judge.causes.replays import LEAVES, ROUNDINGS, name_of_steps, nearest_count
+from taylor_verify.judge.causes.stepped_arcs import Steps, with_steps
 
 # The steps from row to row by which the error of a method is measured, and what may be left to first order.
 _FINE: Final = 4

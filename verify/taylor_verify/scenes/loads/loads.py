@@ -103,15 +103,16 @@ class Loads:
         k = bisect_right(switches, time)
         if not is_later and k and switches[k - 1] == time:
             k -= 1
-        return self._piece(k)
+        return self.numbered(k)
 
     def known_pieces(self) -> Iterator[Piece]:
         """Yield all pieces in the order of time, without those beyond the stairs of floor."""
         for k in range(len(self.switches) + 1):
             if self._is_known(*self._ends(k)):
-                yield self._piece(k)
+                yield self.numbered(k)
 
-    def _piece(self, k: int) -> Piece:
+    def numbered(self, k: int) -> Piece:
+        """The piece before which so many switches are. Raises ValueError where it is not known."""
         if k not in self._pieces:
             begin, end = self._ends(k)
             if not self._is_known(begin, end):

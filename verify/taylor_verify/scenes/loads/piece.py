@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 from itertools import pairwise
 from math import ceil, floor
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.loads.grammar import Fault, Grammar, Unread
 from taylor_verify.scenes.loads.states import Continuous, Held, State
@@ -237,7 +238,7 @@ class PieceReader:
 
     def _tabulated(self, table: Table) -> int:
         """The polynomial of a table, by Horner's rule."""
-        table = self._since_start(table)
+        table = _since_start(table, self._loads.origin, self._loads.rung)
         self.jumps |= table.kind is Kind.HOLD
         if self._is_scan:
             self.switches.update(table.times)
@@ -248,13 +249,6 @@ class PieceReader:
         for coefficient in reversed(coefficients):
             place = steps.combined("+", steps.combined("*", place, time), steps.number(coefficient))
         return place
-
-    def _since_start(self, table: Table) -> Table:
-        loads = self._loads
-        times = [self._on_rung(time - loads.origin) for time in table.times]
-        if loads.rung is not None and any(a >= b for a, b in pairwise(times)):
-            raise NoStep("knots of a table that differ", f"two that {loads.rung.name} makes one")
-        return replace(table, times=tuple(times))
 
     def _on_rung(self, number: Fraction) -> Fraction:
         """A number, rounded once to the rung if there is one."""
@@ -351,6 +345,17 @@ class PieceReader:
 def _placed(entries: Entries, place: str, is_vector: bool) -> list[tuple[Entry, str]]:
     """Pair each entry with its place."""
     return [(entry, f"{place}[{i}]" if is_vector else place) for i, entry in enumerate(entries)]
+
+
+@lru_cache(maxsize=64)
+def _since_start(table: Table, origin: Fraction, rung: Rung | None) -> Table:
+    """A table by the times since the start, rounded to a rung if there is one: each piece asks for it."""
+    times = [time - origin for time in table.times]
+    if rung is not None:
+        times = [rung.round(time) for time in times]
+        if any(a >= b for a, b in pairwise(times)):
+            raise NoStep("knots of a table that differ", f"two that {rung.name} makes one")
+    return replace(table, times=tuple(times))
 
 
 def _between(begin: Fraction | None, end: Fraction | None) -> Fraction:
