@@ -87,6 +87,13 @@ def test_a_sweep_leaves_rows_a_summary_and_the_worst_cases(template: str, tmp_pa
     )
 
 
+def test_no_worst_case_may_be_kept(template: str, tmp_path: Path) -> None:
+    """A sweep of which none is asked for ends with its summary."""
+    result = swept(template, tmp_path / "out", count=2, worst=0)
+    assert (result.exit_status, list(result.worst)) == (0, [])
+    assert (tmp_path / "out" / "summary.md").exists()
+
+
 def test_a_worst_case_is_a_scene_that_runs(template: str, tmp_path: Path) -> None:
     """Run alone, the scene of a worst case has the numbers that the sweep has; a failure fails both."""
     result = swept(template, tmp_path / "out", solver=FAILING, count=1, worst=1)

@@ -20,6 +20,7 @@ from taylor_verify.certify import bounds, certify
 from taylor_verify.certify.dense_answer import pieces_of
 from taylor_verify.certify.enclosed_error import errors_of
 from taylor_verify.certify.pieces import Piece
+from taylor_verify.certify.slopes import slopes_of
 from taylor_verify.cli import main
 from taylor_verify.exact import exact
 from taylor_verify.exact.row_arithmetic import quaternions
@@ -128,6 +129,21 @@ def test_one_interpolant_has_one_bound(answer: Any, more: dict[str, Any]) -> Non
     """However the same cubics are handed over, the bound is the same but for the rounding of doubles."""
     bound = certify(SCENE, SPLINE).bound["omega"]
     assert certify(SCENE, answer, **more).bound["omega"] == pytest.approx(bound, rel=1e-6)
+
+
+def test_slopes_of_a_quaternion_are_half_its_product_with_omega() -> None:
+    """Also where the attitude at the start is no unit quaternion as it is written."""
+    scene = until("euler/with-attitude")
+    times = [Fraction(k, 10) for k in range(41)]
+    motion = exact(scene, times, 18)
+    omega = motion.quantities["omega"].astype(float)
+    q = quaternions(motion.quantities["attitude"].astype(float))
+    rows = [[Fraction(x) for x in row] for row in np.hstack([omega, q]).tolist()]
+    names = [f"w{i}" for i in (1, 2, 3)] + [f"q{i}" for i in range(4)]
+    slopes = np.array(slopes_of(scene, names, times, rows), dtype=float)[:, 3:]
+    s, v = q[:, :1], q[:, 1:]
+    turned = np.hstack([-np.sum(v * omega, axis=1, keepdims=True), s * omega + np.cross(v, omega)])
+    assert np.allclose(slopes, turned / 2, rtol=0, atol=1e-14)
 
 
 def test_a_spline_is_taken_exactly() -> None:

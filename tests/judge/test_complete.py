@@ -130,6 +130,18 @@ def test_nothing_of_it_is_green(tmp_path: Path, capsys: Captured) -> None:
     assert (suites.get("errors"), suites.get("failures")) == ("0", "0")
 
 
+def test_a_call_that_comes_to_nothing_leaves_no_verdicts_of_an_earlier_one(
+    tmp_path: Path, capsys: Captured
+) -> None:
+    """A step of a CI that publishes the report in any case would show them as its own."""
+    file, report = file_of(tmp_path, range(41), OMEGA), tmp_path / "junit.xml"
+    assert main(["check", file, "--scene", SCENE, "--partial", "--junit", str(report)]) == 0
+    assert report.exists()
+    assert main(["check", file, "--scene", "euler/no-such", "--junit", str(report)]) == 2
+    assert not report.exists()
+    assert "no-such" in capsys.readouterr().err
+
+
 def test_a_baseline_of_a_part_is_no_regression_of_the_whole(
     tmp_path: Path, capsys: Captured
 ) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from builders.turns import by_turns
 
+from taylor_verify.judge.causes import cause_search
 from taylor_verify.judge.causes.material import ExactMotion
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
@@ -72,10 +73,16 @@ def test_an_attitude_that_follows_from_its_own_omega_has_no_cause(
 def test_a_motion_that_is_not_reached_from_its_own_start_has_no_cause(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The search for causes from there ends, though the first row of these momenta stays another one."""
+    """The search for causes from there ends, though the first row of these momenta stays another one.
+
+    That is so where their axes are not asked for.
+    """
     name = "axes exchanged"
     kinds = (replace(k, sorts=SORTS) if k.name == name else k for k in measure.KINDS)
     monkeypatch.setattr(measure, "KINDS", tuple(kinds))
+    (sentence,) = json.loads(measure.said_of((69, name, 1)))["sentences"]
+    assert "made of velocities of which the angular ones have other axes: 2 1 3" in sentence
+    monkeypatch.setattr(cause_search, "printed_by_another_body", lambda _: None)
     assert json.loads(measure.said_of((69, name, 1)))["sentences"] == []
 
 

@@ -131,6 +131,16 @@ def test_text_of_version_2_has_the_scalar_last(name: str, tmp_path: Path) -> Non
     )
 
 
+@pytest.mark.parametrize("version", ["9.0", ""])
+def test_a_version_that_is_not_known_is_refused(version: str, tmp_path: Path) -> None:
+    """The order of the scalar follows from the version."""
+    content = text(version=version)
+    if not version:
+        content = content.partition("\n")[2]
+    with pytest.raises(Refused, match=r"version 1 or 2, got 9.0|1.0 or 2.0, got no version"):
+        read(written(tmp_path, content))
+
+
 @pytest.mark.parametrize(("order", "numbers"), [("FIRST", "4 1 2 -3"), ("LAST", "1 2 -3 4")])
 @pytest.mark.parametrize(("direction", "sign"), [("A2B", 1), ("B2A", -1)])
 def test_version_1_says_order_and_direction(

@@ -216,6 +216,21 @@ def test_numbers_are_counted_before_a_table_is_made_of_them(
         read(file)
 
 
+def test_a_message_that_is_cut_off_is_refused(tmp_path: Path) -> None:
+    """ROS prints what is zero: a component that is missing at the end of an echo is none."""
+    file = tmp_path / "mine.yaml"
+    message = "header:\n  stamp:\n    sec: {}\n    nanosec: 0\nangular_velocity:\n"
+    message += "  x: 1.0\n  y: 2.0\n  z: 3.0\n"
+    first, last = message.format(1), message.format(2)
+    file.write_text(f"{first}---\n{last}---\n")
+    assert len(read(file).times) == 2
+    file.write_text(f"{first}---\n{last.partition('  z')[0]}")
+    with pytest.raises(
+        Refused, match=r"whole messages, got one that ends with `y: 2\.0` @ .*line 16"
+    ):
+        read(file)
+
+
 @pytest.mark.parametrize("line", ["\n", "# nothing\n", "0,0,0,0\n"])
 def test_lines_are_counted_whatever_is_in_them(
     line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

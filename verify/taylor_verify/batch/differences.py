@@ -141,7 +141,8 @@ def compare(before: Iterable[Verdict], now: Iterable[Verdict]) -> Differences:
         {(v.run, v.quantity): v for v in rows if v.run not in lacking} for rows in (old, new)
     )
     differing = [_missing(v) for key, v in earlier.items() if key not in later]
-    differing += [_new(v) for key, v in later.items() if key not in earlier]
+    runs = {run for run, _ in earlier}
+    differing += [_new(v, v.run in runs) for key, v in later.items() if key not in earlier]
     differing += [
         Difference.of(v, Direction.UNAVAILABLE, "the rung on both machines", "it on one")
         for v in (*old, *new)
@@ -159,8 +160,8 @@ def _missing(verdict: Verdict) -> Difference:
     return Difference.of(verdict, Direction.WORSE, "this row", "none")
 
 
-def _new(verdict: Verdict) -> Difference:
-    is_lost = verdict.quantity in SOUND_ATTITUDE
+def _new(verdict: Verdict, was_run: bool) -> Difference:
+    is_lost = was_run and verdict.quantity in SOUND_ATTITUDE
     direction = Direction.WORSE if is_lost else Direction.CHANGED
     return Difference.of(
         verdict, direction, "no such row", "one that fails" if is_lost else "a new one"

@@ -22,6 +22,7 @@ from taylor_verify.certify.samples import of_callable, of_samples
 from taylor_verify.records.faults import brief, refusal
 from taylor_verify.records.json_text import exact_document
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.assigned import Request
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.objects import trajectory
 
@@ -29,18 +30,23 @@ _DOCUMENT: Final = frozenset(("breaks", "quantities"))
 
 
 def pieces_of(
-    answer: Any, scene: Scene, degree: Any = None, nodes: Any = None, interpolation: Any = None
+    answer: Any,
+    scene: Scene,
+    degree: Any = None,
+    nodes: Any = None,
+    interpolation: Any = None,
+    columns: Request = (),
 ) -> Pieces:
     """Return the pieces of an answer. Raises Refused for what is none, and ValueError as `check` does."""
     if isinstance(answer, str | os.PathLike):
         document = _document(answer)
         if document is None:
-            return of_samples(read(answer, (), scene), scene, interpolation)
+            return of_samples(read(answer, columns, scene), scene, interpolation)
         answer = document
     if isinstance(answer, Pieces):
         return answer
     if interpolation is not None:
-        return of_samples(trajectory(answer, scene), scene, interpolation)
+        return of_samples(trajectory(answer, scene, columns), scene, interpolation)
     if hasattr(answer, "sol") and hasattr(answer, "t"):
         if answer.sol is None:
             raise refusal("a dense answer: solve_ivp(.., dense_output=True)", "None", "answer.sol")

@@ -14,7 +14,7 @@ from taylor_verify.exact.enclosure.image import Image
 from taylor_verify.exact.event_times import system
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value
-from taylor_verify.numbers.rotation import conjugate, product, scalar_product
+from taylor_verify.numbers.rotation import conjugate, product
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.quantities import COLUMNS, MOMENTA
 from taylor_verify.scenes.loads.states import Held
@@ -73,6 +73,6 @@ def _since_start(scene: Scene, point: list[arb]) -> list[arb]:
     if len(point) < body + 4:
         return point
     start = balls(scene.initial.attitude)
-    length = scalar_product(start, start).sqrt()
+    length = sum((entry * entry for entry in start), arb(0)).sqrt()
     turn = product(conjugate(start), point[body : body + 4])
     return [*point[:body], *(entry / length for entry in turn), *point[body + 4 :]]

@@ -145,6 +145,7 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
 --scene! SCENE  the scene that the file answers
 --tolerance E  the error that is allowed, as in `check`
 --interpolation linear|cubic|hermite  what the program of the file makes of its samples
+--columns* NAME=THEIRS,...  THEIRS is the column of samples for NAME, as in `check`
 """,
     ),
     "explain": (

@@ -21,6 +21,7 @@ from taylor_verify.cli.console import titled
 from taylor_verify.cli.inputs import parse_tolerance, read_scene, read_tolerances
 from taylor_verify.cli.progress import working
 from taylor_verify.records.json_text import complete
+from taylor_verify.solvers.files.columns.assigned import request
 from taylor_verify.words.certificate import certificate_lines, finding_sentence
 
 
@@ -36,7 +37,11 @@ def answer(options: argparse.Namespace) -> Answer:
             raise WrongCall("expected one number for all quantities, got several @ --tolerance")
         with working(f"certify {options.file}"):
             certificate = certify(
-                scene, options.file, tolerance, interpolation=options.interpolation
+                scene,
+                options.file,
+                tolerance,
+                interpolation=options.interpolation,
+                columns=dict(request(options.columns or ())),
             )
     messages = [certificate.because] if certificate.because else []
     status = PASS if certificate.passed else UNDECIDED if certificate.is_undecided else FAIL

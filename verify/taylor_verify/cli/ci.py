@@ -14,7 +14,7 @@ from taylor_verify.batch.earlier_file import read_baseline
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import remarks, write_junit
 from taylor_verify.cli.answer import WRONG_CALL, Answer, WrongCall, graver, wrong_calls
-from taylor_verify.cli.folders import not_written, writable_file
+from taylor_verify.cli.folders import not_written, unwritable, writable_file
 from taylor_verify.cli.streams import tell_runner
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.faults import Refused
@@ -50,6 +50,10 @@ def outputs(options: argparse.Namespace) -> Outputs:
     Raises WrongCall for a file that cannot be written, and for one that is no baseline.
     """
     junit = None if options.junit is None else writable_file(options.junit, "--junit")
+    if junit is not None:
+        with unwritable("a file that can be written", options.junit, "--junit"):
+            # Nobody shall take the verdicts of an earlier call for those of one that comes to none.
+            junit.unlink(missing_ok=True)
     by_baseline = options.gate == "baseline"
     if by_baseline and options.baseline is None:
         raise WrongCall("expected --baseline FILE beside --gate baseline, got none @ --gate")
@@ -80,6 +84,12 @@ def concluded(
         messages += _messages(source, comparison)
         if not comparison.compared:
             messages.append(_nothing_shared(asked.baseline.verdicts, results.verdicts))
+        elif others := sorted(
+            {v.scene for v in asked.baseline.verdicts} - {v.scene for v in results.verdicts}
+        ):
+            messages.append(
+                f"scenes of the baseline that this call did not ask for: {', '.join(others)}"
+            )
         if comparison.decides and status != WRONG_CALL:
             status = comparison.exit_status
             decision = _decision(source, comparison, results.verdicts)

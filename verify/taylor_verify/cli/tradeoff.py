@@ -174,7 +174,9 @@ def _print_points(page: Page, trade: Mapping[str, Any]) -> None:
         sizes = [_short(value) for value in (*sizes, row["drift"])]
         times = [_short(row[key]) for key in _TIMES]
         begin = [f"{row['solver']} {row['setting']}".rstrip(), row["rung"], mark]
-        cells.append([*begin, *sizes, str(row["steps"]), str(row["evaluations"]), *times])
+        # A solver that counts nothing has 0.
+        counts = (str(row[key] or "") for key in ("steps", "evaluations"))
+        cells.append([*begin, *sizes, *counts, *times])
     print_table(page.console, ("setting", "rung", "", *errors, *_NUMBERS), cells, keys=2)
 
 

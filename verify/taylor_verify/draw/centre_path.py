@@ -152,7 +152,7 @@ def _stage(extent: Numbers) -> tuple[Stage, Numbers, Numbers]:
         axis = getattr(axes, f"{side}axis")
         axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]))
         axis.set_pane_color("#FAFAFA")
-        axis.labelpad = -1.0
+        axis.labelpad = -1.0 if side == "z" else 4.0
     axes.tick_params(pad=0)
     return Stage(figure, axes, view, _STAGE), low, high
 

@@ -1,4 +1,4 @@
-"""The components of the motion against time: omega in principal axes with its flips, or both impulses.
+"""The components of the motion against time: omega in principal axes, or beside loads in body axes.
 
 A flip is where the middle component of omega is zero: from one to the next a free triaxial body takes the
 flip time 2K/lam of its orbit.
@@ -69,7 +69,7 @@ class Series:
 
 
 def series(document: Document) -> Series:
-    """Return the components of omega in principal axes, or of both impulses in the axes of the scene.
+    """Return the components of omega in principal axes, or of the loads and what they act on in body axes.
 
     Raises NotDrawn if the start and the end are the same double.
     """
@@ -86,8 +86,11 @@ def series(document: Document) -> Series:
             Panel("y", "angular impulse", np.array(course["angular_impulse"])),
         )
         return Series(times, (*panels, *_acting(document)), (), None)
-    rows = np.array(course["omega"]) @ np.array(body["axes"]).T
-    panel = Panel(OMEGA, "angular velocity, principal axes", rows)
+    # Loads beside it are in body axes.
+    has_loads = bool(document["acting"])
+    axes, name = (np.eye(3), "body") if has_loads else (np.array(body["axes"]), "principal")
+    rows = np.array(course["omega"]) @ axes.T
+    panel = Panel(OMEGA, f"angular velocity, {name} axes", rows)
     numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
     flips: tuple[float, ...] = ()
     # The flips are in the time of the scene. With damping the flip time of the orbit is in another time.

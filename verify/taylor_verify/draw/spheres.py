@@ -50,7 +50,10 @@ def _directions(document: Document) -> dict[str, Numbers]:
     for letter, rows in vectors.items():
         sizes = np.linalg.norm(rows, axis=1, keepdims=True)
         if sizes.min() > _ZERO * max(sizes.max(), wheels):
-            directions[letter] = rows / sizes
+            unit = rows / sizes
+            # A vector that turns round from one time to the next was zero between.
+            if np.all(np.sum(unit[1:] * unit[:-1], axis=1) > 0):
+                directions[letter] = unit
     return directions
 
 

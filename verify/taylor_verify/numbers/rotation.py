@@ -18,7 +18,7 @@ Number = TypeVar("Number", int, Fraction, arb)
 
 
 def scalar_product(p: Sequence[Number], q: Sequence[Number]) -> Number:
-    """Return p . q."""
+    """Return p . q of two vectors of three."""
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 
 

@@ -94,6 +94,8 @@ def run(options: argparse.Namespace) -> Answer:
     if options.board is not None and options.board not in BOARDS:
         raise WrongCall(f"expected one of {', '.join(BOARDS)}, got {options.board!r:.60} @ --board")
     folder = Path(reports_folder(options.folder, measures=False))
+    if not folder.is_dir():
+        raise WrongCall(f"expected the folder of reports, got {str(folder)!r:.60} @ --from")
     boards = [options.board] if options.board else [*BOARDS]
     if options.words:
         return _added(options, folder, boards)

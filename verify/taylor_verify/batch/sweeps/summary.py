@@ -121,6 +121,8 @@ class _Totals:
 
     def _add_worst(self, rows: Rows) -> None:
         """Keep the bodies that came nearest to failing, of these and those before."""
+        if not self._most:
+            return
         size = np.where(
             rows["is_asked"] & (rows["quantity"] != INITIAL), rows["ratio_judged"], -inf
         )

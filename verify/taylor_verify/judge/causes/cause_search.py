@@ -26,6 +26,7 @@ from taylor_verify.judge.causes.numbers_and_states import in_numbers, in_states
 from taylor_verify.judge.causes.other_readings import attitudes, rates, with_omega
 from taylor_verify.judge.causes.parts_of_a_run import causes_in_pieces, of_part
 from taylor_verify.judge.causes.paths import contradicts
+from taylor_verify.judge.causes.printed_bodies import printed_by_another_body
 from taylor_verify.judge.causes.proof import are_explained, left_of_all, may_leave, whole
 from taylor_verify.judge.causes.quaternion_rows import matrices
 from taylor_verify.judge.causes.settled import PAIR
@@ -65,6 +66,8 @@ def causes_of(answer: Answer) -> list[Cause]:
     undone = _undone(answer, by_group)
     if undone:
         return undone
+    if not by_group.keys() >= {*answer.moving} and (printed := printed_by_another_body(answer)):
+        return [printed]
     # The vectors of one quantity fail together, also where the error is that of one of them.
     largest = max((answer.worst[name] for name in by_group if name in answer.groups), default=0.0)
     slight = {name for name in answer.groups if answer.worst[name] < _SLIGHT * largest}

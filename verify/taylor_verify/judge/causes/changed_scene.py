@@ -76,7 +76,9 @@ def _changed_entries(loads: Loads | None, other: Loads | None) -> dict[str, str]
     """Return the keys whose entries are others in other loads, with these entries."""
     own = set() if loads is None else {(place.key, place.entry) for place in places(loads)}
     before, after = _entries_by_key(loads, own), _entries_by_key(other, own)
-    return {key: words for key, words in after.items() if before.get(key) != words}
+    changed = {key: words for key, words in after.items() if before.get(key) != words}
+    written_out = [key for key in before if key.endswith(".force") and key not in after]
+    return changed | dict.fromkeys(written_out, "[0.0, 0.0, 0.0]")
 
 
 def _entries_by_key(loads: Loads | None, own: Container[tuple[str, Entry]]) -> dict[str, str]:

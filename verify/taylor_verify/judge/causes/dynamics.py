@@ -67,8 +67,8 @@ _LONGEST: Final = 8
 _FAR: Final = 0.01
 # A fit that leaves less is no fit of these arcs alone.
 _ALONE: Final = 1e-4
-# The pace of a motion by a coarse method is wrong by no more than this part.
-_COARSE_PACE: Final = 0.05
+# Velocities that change along one direction leave this part in any other one.
+_ON_A_LINE: Final = 1e-9
 # A motion has one pace if a method changes it otherwise by less than this part, or so many roundings.
 _OFF_PACE: Final = 1e-4
 _OFF_ROUNDINGS: Final = 30.0
@@ -132,10 +132,7 @@ def search_by(answer: Answer, arcs: Arcs) -> Search:
 
 
 class Search:
-    """Candidates for the errors of some ``groups``, by some ``evidence``.
-
-    ``motion`` is that of changes at the rows of an answer; that of faults may be another one.
-    """
+    """Candidates for the errors of some ``groups``, by some ``evidence`` and the ``motion`` of changes."""
 
     def __init__(
         self,
@@ -180,22 +177,28 @@ class Search:
             is_exact = any(map(self._is_exact, candidates))
             if not is_exact and (cause := self._over_kinks(of_group, candidates)):
                 return cause
-            is_blind = any(map(self._is_pace, candidates))
+            is_blind = self._is_on_a_line or any(map(self._is_pace, candidates))
             if not has_methods and (is_blind or not is_exact):
                 candidates += replays(self.answer, min(stride, _LONGEST))
             has_methods = True
         if is_blind:
-            candidates = [each for each in candidates if has_few_digits(each, self.floor)]
+            candidates = self._written(candidates)
         elif not is_stepped and not any(map(self._is_exact, candidates)):
             candidates += self._of_simulators(min(stride, _LONGEST))
         cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
-        if is_stepped or is_blind:
+        if is_stepped or cause:
             return cause
         is_method = any(candidate.kind == "method" for candidate in candidates)
-        if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
+        if not (is_blind or is_method) and self.floor * _PAIR_ROUNDINGS < 1:
             with self.answer.budget.share(1 / 2):
                 cause = self.cause(self._telling([*self._pairs(linear)]), PAIR)
         return cause or self._beside_steps(linear, stride)
+
+    def _written(self, candidates: Sequence[Candidate]) -> list[Candidate]:
+        """Return the candidates of a motion that any number explains: written, or as exact."""
+        some = [each for each in candidates if has_few_digits(each, self.floor)]
+        has_number = any(each.count and self._is_exact(each) for each in some)
+        return [*candidates] if has_number else some
 
     def _of_simulators(self, stride: int) -> Iterator[Candidate]:
         """Yield what simulators do in a step, or to their actuators, each for a part of the budget."""
@@ -238,21 +241,23 @@ class Search:
         return None
 
     def _is_exact(self, candidate: Candidate) -> bool:
-        """Return True if a candidate leaves the rounding of the file, or the steps of a fair simulator.
-
-        Nor is it seen to leave less than the arcs are wrong by.
-        """
+        """Return True if a candidate leaves the rounding, fair steps, or the error of arcs."""
         least = max(3 * self.floor + NOTHING, FAIR, 3 * self.evidence.blur)
         return candidate.defects < least or candidate.family.name == self.proven
 
     def _is_pace(self, candidate: Candidate) -> bool:
-        """Return True for another pace of the motion that is as exact, and no more than a method's error.
+        """Return True for another pace of a motion of one pace that is exact.
 
-        A motion of one pace, as a decay or a steady precession, does not tell the error of a method from
-        any number of the equations that sets the pace.
+        Such a motion, as a decay, does not tell the error of a method from a number that sets the pace.
         """
-        is_near = candidate.kind == "clock" and abs(candidate.numbers[0] - 1) < _COARSE_PACE
-        return is_near and self._is_exact(candidate) and self._has_one_pace
+        return candidate.kind == "clock" and self._is_exact(candidate) and self._has_one_pace
+
+    @cached_property
+    def _is_on_a_line(self) -> bool:
+        """True if the velocities change along one direction: any number, or two, explain such a motion."""
+        v = self.answer.truth.v / self.answer.sizes
+        singular = np.linalg.svd(v - v[0], compute_uv=False)
+        return bool(singular[1] <= _ON_A_LINE * singular[0])
 
     @cached_property
     def _has_one_pace(self) -> bool:

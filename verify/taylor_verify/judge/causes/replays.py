@@ -89,7 +89,7 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     acting = answer.right.acting
     of_loads = [*replayed.steps(held_loads.methods(acting) if acting else {}, _ALONE)]
     is_exact = any(steps.left < ROUNDINGS * replayed.floor for steps in of_loads)
-    tried = [iter(of_loads), *[replayed.steps(known, _ALONE)] * (not is_exact)]
+    tried = [iter(of_loads), replayed.steps(known, _ALONE)]
     if answer.count > 2 * FEW and not is_exact:
         # A method with memory has a first step of another kind.
         later = answer.at(np.s_[1:])

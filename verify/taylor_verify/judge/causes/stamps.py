@@ -34,6 +34,9 @@ _ON_A_LINE: Final = 1e-6
 _MOST_DECIMALS: Final = 6
 _SCATTER: Final = "times scatter"
 _DRIFTS: Final = "the clock drifts"
+_PACE: Final = "the pace changes smoothly"
+# Offsets of a smooth pace bend by no more than this part from row to row.
+_SMOOTH: Final = 0.05
 
 
 def other_times(answer: Answer) -> Cause | None:
@@ -49,7 +52,7 @@ def other_times(answer: Answer) -> Cause | None:
         return None
     words = _pattern(answer, late)
     is_telling = (answer.n == 6 or answer.file.q is not None) and not is_line
-    of_rows = (_SCATTER, _DRIFTS)
+    of_rows = (_SCATTER, _DRIFTS, _PACE)
     if words is None or not answer.failed or (words.startswith(of_rows) and not is_telling):
         return None  # one number for each row explains much of three, and all of a motion on a line
     worst = answer.worst
@@ -254,4 +257,5 @@ def _factor_or_jumps(answer: Answer, late: Floats, size: float, spacing: float) 
     if np.max(np.abs(powers @ (rate, bend) - late)) < _PATTERN * size:
         law = f"{'' if abs(rate) < _PATTERN * abs(bend) else f' {rate:+.6g} t'} {bend:+.6g} t^2"
         return f"{_DRIFTS}: the row of the time t since the start holds the motion at t{law}"
-    return f"{_SCATTER}: each row is exact at another time, at most {size:.3g} away"
+    is_smooth = np.max(np.abs(np.diff(late, 2)), initial=0.0) < _SMOOTH * size
+    return f"{_PACE if is_smooth else _SCATTER}: each row is exact at another time, at most {size:.3g} away"

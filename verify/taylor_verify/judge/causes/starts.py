@@ -134,7 +134,7 @@ def _factor(answer: Answer) -> tuple[str, ...]:
         return ()
     factor = float(nu @ nu / (own @ nu))
     off = np.abs(own - nu / factor) / answer.sizes
-    if np.any(off > _OFF * answer.rounding):
+    if np.any(off > _OFF * answer.rounding) or f"{factor:.6g}" == "1":
         return ()
     noun = "inertia" if answer.n == 3 else "mass matrix"
     return (f"factor of the {noun} = {factor:.6g}, from the scene's momenta",)

@@ -151,6 +151,8 @@ def _in_text(file: Content, path: Path, root: str, names: Names) -> list[Segment
                 expected = f"an attitude ephemeris ({keyword})"
                 raise refusal(expected, cut(word), place, "no other message of the CCSDS is read")
             version = value
+            if not version.startswith(("1", "2")):
+                raise refusal("version 1 or 2", cut(version), place)
         elif not equals and read and block == ("DATA" if root == "aem" else ""):
             cells = line.split()
             read[-1].add(read[-1].order(names, len(cells), place), cells, place)
@@ -158,6 +160,8 @@ def _in_text(file: Content, path: Path, root: str, names: Names) -> list[Segment
             raise refusal("KEYWORD = value or a block of data", repr(cut(line)), place)
     if block:
         raise refusal(f"{block}_STOP", "the end of the file", path)
+    if read and not version:
+        raise refusal(f"{keyword} = 1.0 or 2.0", "no version", path)
     return [segment for segment in read if segment.columns]
 
 

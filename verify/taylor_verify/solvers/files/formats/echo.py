@@ -37,18 +37,23 @@ def read(file: Content, path: Path) -> Table:
 
 
 def _messages(file: Content, path: Path) -> Iterator[Entries]:
-    message, has_braces = _Message(), False
+    message, has_braces, first = _Message(), False, set[str]()
     for number, text in enumerate(file.lines(), start=1):
         line = text.rstrip()
         has_braces |= line.endswith(_OPENS)
         if line.startswith(_BETWEEN) or (has_braces and not line):
             if message.entries.values:
+                first = first or {*message.entries.values}
                 yield message.entries
             message = _Message()
         elif line and not line.lstrip().startswith(("#", _CLOSES)):
             opened = f"{line.removesuffix(_OPENS)}:" if line.endswith(_OPENS) else line
             message.take(opened, f"{path}, line {number}")
             KEYS.check(len(message.entries.values), path)
+    if not has_braces and set() < {*message.entries.values} < first:
+        # protobuf leaves out what is zero; ROS prints it.
+        got = f"one that ends with `{cut(line.strip())}`"
+        raise refusal("whole messages", got, f"{path}, line {number}", "remove the last one")
     if message.entries.values:
         yield message.entries
 
