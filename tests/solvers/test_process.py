@@ -192,6 +192,7 @@ MISANSWERS = [
     ({"seconds": 0, "compile_seconds": -1}, "@ compile_seconds"),
     ({"compile_seconds": 1}, "expected seconds beside compile_seconds"),
     ({"remark": 1}, "expected a sentence, got 1 @ remark"),
+    (b'{"unsuited": " "}', "expected a sentence that says why @ unsuited"),
 ]
 
 

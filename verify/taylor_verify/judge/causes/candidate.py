@@ -32,7 +32,8 @@ class Candidate:
     """A fault with its numbers, the part of the ``defects`` that it leaves, and its motion at rows.
 
     It may be proven if it leaves no more than ``near``. The steps of a ``method`` take the place of its
-    changes. ``errors`` are those of its numbers, where they are known.
+    changes. ``errors`` are those of its numbers, where they are known. Unless its numbers ``are_seen``, the
+    motion does not tell all of them.
     """
 
     family: Family
@@ -42,6 +43,7 @@ class Candidate:
     near: float
     method: Any = None
     errors: Floats | None = None
+    are_seen: bool = True
 
     @property
     def kind(self) -> str:

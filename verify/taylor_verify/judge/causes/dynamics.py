@@ -271,15 +271,13 @@ class Search:
         has_pace = any("clock" in own or own == {"damping", "gyroscopic term"} for own in kinds)
         return [p for p in pairs if has_few_digits(p, self.floor)] if has_pace else pairs
 
-    # Evidence.
-
     def _candidate(self, family: Family, fit: Fitted) -> Candidate:
         answer, right = self.answer, self.answer.right
         coupled = right.changed(family.changes(fit.numbers)).coupled
         near = _LOOSE if answer.file.q is None and coupled > answer.n else LEAVES
         motion = self.motion if family.count else self.motion_of_faults
-        left, errors = fit.size / self.evidence.size, fit.errors
-        return Candidate(family, fit.numbers, left, motion, near, errors=errors)
+        left, of = fit.size / self.evidence.size, (fit.errors, fit.are_seen)
+        return Candidate(family, fit.numbers, left, motion, near, None, *of)
 
     def without_numbers(self, faults: Sequence[Family]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""

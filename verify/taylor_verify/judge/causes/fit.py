@@ -189,11 +189,13 @@ class Fitted:
     """The numbers of a family that fit best, the size of the defects that they leave, and their errors.
 
     ``errors`` are those that defects of this size by chance would make; none where they are not known.
+    Unless they ``are_seen``, some change of the numbers changes nothing.
     """
 
     numbers: Floats
     size: float
     errors: Floats | None = None
+    are_seen: bool = True
 
 
 def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None) -> Fitted:
@@ -226,15 +228,12 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
             break
     if measured != evidence.defects:
         size = float(_sizes(evidence.defects([family.changes(numbers)]))[0])
-    return Fitted(numbers, size, _errors(slopes * family.scale, size) * family.scale)
-
-
-def _errors(slopes: Floats, size: float) -> Floats:
-    """Return the errors of numbers by defects of this size; what no slope shows is left out."""
-    _, singular, V = np.linalg.svd(slopes, full_matrices=False)
+    scaled = slopes * family.scale
+    _, singular, V = np.linalg.svd(scaled, full_matrices=False)
     is_seen = singular > _SEEN * max(singular[0], 1e-300)
-    each = size / np.sqrt(len(slopes))
-    return np.asarray(each * np.linalg.norm(V[is_seen] / singular[is_seen, None], axis=0))
+    each = size / np.sqrt(len(scaled))
+    errors = each * np.linalg.norm(V[is_seen] / singular[is_seen, None], axis=0)
+    return Fitted(numbers, size, errors * family.scale, bool(np.all(is_seen)))
 
 
 def by_factor(arcs: Arcs, family: Family, best: Fitted) -> Fitted:

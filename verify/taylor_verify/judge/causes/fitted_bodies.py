@@ -31,6 +31,8 @@ def described(answer: Answer, candidate: Candidate) -> tuple[str, Changes]:
         mass, free = changes["mass"], ""
         if answer.is_up_to_a_factor:
             mass, free = nearest_factor(right, mass), ", all entries known up to one factor"
+        if not candidate.are_seen:
+            free += ", not all of which this motion shows"
         if right.energy is None or candidate.family.labels[0].startswith("M_"):
             both = entries(right.mass, mass)
         else:

@@ -149,7 +149,9 @@ def read(text: bytes, problem: Problem) -> Answer:
     """
     document = _parsed(text)
     if "unsuited" in document:
-        raise Unsuited(_sentence(document, "unsuited"))
+        if why := _sentence(document, "unsuited").strip():
+            raise Unsuited(why)
+        raise Misanswer("expected a sentence that says why @ unsuited, got an empty one")
     names = column_names(problem)
     if missing := [name for name in names if name not in document]:
         raise Misanswer(f"expected the columns {', '.join(names)}, got no {', '.join(missing)}")

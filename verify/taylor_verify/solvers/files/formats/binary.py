@@ -83,7 +83,8 @@ def read(file: Content, path: Path) -> Table:
     """Return the arrays; every header is checked before the data of any is read."""
     if file.beginning(6) == np.lib.format.MAGIC_PREFIX:
         return _of_one(file, path)
-    with unbroken("an NPZ archive", path, _BROKEN):
+    kind = "an NPY array" if path.suffix.lower() == ".npy" else "an NPZ archive"
+    with unbroken(kind, path, _BROKEN):
         _check_entries(file, path)
         with zipfile.ZipFile(file.binary) as archive:
             members = archive.infolist()
