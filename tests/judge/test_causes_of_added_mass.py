@@ -12,6 +12,7 @@ from builders.caused_rows import Array, Law, columns, rows, titles
 from builders.scenes import text_of
 from builders.trajectories import Columns
 from builders.turns import by_turns
+from scipy.spatial.transform import Rotation
 
 from taylor_verify.judge.causes.fitted_bodies import nearest_factor
 from taylor_verify.judge.causes.material import equations_of
@@ -201,3 +202,54 @@ def test_the_factor_of_a_free_body_leaves_the_entries_that_agree_best_unchanged(
     fitted = right.mass.copy()
     fitted[[3, 4, 5], [3, 4, 5]] *= [0.9992, 0.9991, 0.9993]
     assert np.allclose(nearest_factor(right, 1.0008 * fitted), fitted, rtol=1e-12)
+
+
+def test_a_centre_of_mass_that_the_terms_alone_have_is_named(tmp_path: Path) -> None:
+    """A mass matrix without m r beside Coriolis terms that have it."""
+    own = body()[0]
+    mass = np.kron(np.eye(2), np.ones((3, 3))) * own + FULL
+
+    def law(t: float, nu: Array, q: Array) -> Array:
+        return np.linalg.solve(mass, -coriolis(own + FULL, nu) @ nu)
+
+    (title,) = titles(tmp_path, WHOLE, answer(law))
+    assert title.startswith(
+        "coupling by the centre of mass (m r) in the mass matrix alone: m r_3 = 0 "
+    )
+
+
+def test_a_mass_matrix_in_single_precision_is_named(tmp_path: Path) -> None:
+    """Its entries are off by some 1e-8, which twelve digits show."""
+    own = body()[0]
+    mass = (own + FULL).astype(np.float32).astype(float)
+
+    def law(t: float, nu: Array, q: Array) -> Array:
+        return np.linalg.solve(mass, -coriolis(mass, nu) @ nu)
+
+    assert titles(tmp_path, WHOLE, answer(law)) == ["mass matrix in float32"]
+
+
+HUNG = VEHICLE.replace(
+    "[initial]",
+    "weight = { force = [0, 0, 313], at = [0, 0, 0.02] }\nbuoyancy = { force = [0, 0, -313] }\n[initial]",
+)
+
+
+@pytest.mark.parametrize("in_weight", [True, False])
+def test_a_centre_of_mass_at_the_origin_is_so_in_the_weight_too(
+    in_weight: bool, tmp_path: Path
+) -> None:
+    """One number of a simulator is at two places of a scene; the other way the body alone is named."""
+    own, added = body()
+    mass = np.kron(np.eye(2), np.ones((3, 3))) * own + added
+    mass[3:, 3:] = np.diag([0.12, 4.2, 4.2]) + added[3:, 3:]
+    at = np.array([0, 0, 0.0 if in_weight else 0.02])
+
+    def law(t: float, nu: Array, q: Array) -> Array:
+        R = Rotation.from_quat([*q[1:], q[0]]).as_matrix()
+        couple = np.cross(at, R.T @ [0, 0, 313.0])
+        return np.linalg.solve(mass, np.r_[np.zeros(3), couple] - coriolis(mass, nu) @ nu)
+
+    title = titles(tmp_path, HUNG, answer(law))[0]
+    assert title.startswith("centre of mass at the origin")
+    assert title.endswith(", in the weight too") == in_weight

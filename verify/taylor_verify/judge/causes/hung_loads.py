@@ -7,7 +7,10 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final
 
+import numpy as np
+
 from taylor_verify.judge.causes.changed_texts import added
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import HANGING
 from taylor_verify.judge.causes.vectors_of_texts import (
     BY_R,
@@ -16,8 +19,11 @@ from taylor_verify.judge.causes.vectors_of_texts import (
     decimal,
     turned,
 )
-from taylor_verify.numbers.tensors import ZERO_VECTOR, scaled
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector, scaled
 from taylor_verify.scenes.loads.loads import Hung, Loads
+
+# A point is the centre of mass if it is no farther from it than by this part, for the rounding of doubles.
+_NEAR: Final = 1e-12
 
 
 def hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
@@ -43,6 +49,20 @@ def hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
             for k in some:
                 other = added(other, texts_of(loads.hung[k]))
             yield f"{noun} {words}", other
+
+
+def hung_at_centre(loads: Loads | None, centre: Floats, factor: int) -> Loads | None:
+    """Return the loads with what hangs at the centre of mass at this factor of it; None if nothing does."""
+    every = () if loads is None else loads.hung
+    some = [k for k, hung in enumerate(every) if any(hung.at) and _is_near(hung.at, centre)]
+    if loads is None or not some:
+        return None
+    return with_hung(loads, some, lambda hung: Hung(hung.force, scaled(Fraction(factor), hung.at)))
+
+
+def _is_near(at: Vector, centre: Floats) -> bool:
+    size = float(np.max(np.abs(centre)))
+    return bool(np.all(np.abs(np.array(at, dtype=float) - centre) <= _NEAR * size))
 
 
 def with_hung(loads: Loads, some: Sequence[int], change: Callable[[Hung], Hung]) -> Loads:

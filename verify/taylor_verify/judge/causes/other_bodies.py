@@ -13,6 +13,7 @@ from taylor_verify.judge.causes.basis import EPSILON, coriolis, coriolis_of
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
 from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.hung_loads import hung_at_centre
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.terms import load_names
 
@@ -32,6 +33,8 @@ _TOGETHER: Final[dict[str, _Places]] = {
     "its lower right block": tuple(product((4, 5, 6), (4, 5, 6))),
     "all but its Munk moment": tuple(product(range(1, 7), (4, 5, 6))),
 }
+# Another centre of mass is a factor of its place.
+_OF_CENTRE: Final = {"centre of mass at the origin": 0, "centre of mass on the other side": -1}
 _ADDED: Final = (("left out", 0.0), ("with the other sign", -1.0), ("twice", 2.0))
 
 
@@ -47,6 +50,12 @@ def faults_of_bodies(right: Equations) -> Iterator[Family]:
         is_body = np.all(np.linalg.eigvalsh(mass) > 0)
         if is_body:
             yield fault(name, "body", {"mass": mass})
+            if name in _OF_CENTRE and (
+                loads := hung_at_centre(right.loads, _arm(right), _OF_CENTRE[name])
+            ):
+                assert right.acting is not None
+                changes = {"mass": mass, "acting": right.acting.of(loads)}
+                yield fault(f"{name}, in the weight too", "body", changes)
         # Wrong axes are wrong in both.
         if not (name.startswith("principal axes") or np.allclose(coriolis_of(mass), 0.0)):
             yield fault(f"{name} in the {_term(right)} alone", "Coriolis matrix", {"extra": extra})
@@ -98,6 +107,9 @@ def _misread_masses(right: Equations) -> Iterator[tuple[str, Any]]:
     yield "coupling left out", _coupled(mass, 0.0)
     yield "coupling with the other sign", _coupled(mass, -1.0)
     yield "inverse masses cut to their diagonal", np.diag(1 / np.diag(right.inverse))
+    single = np.linalg.inv(energy.astype(np.float32).astype(float))
+    yield "energy in float32", single if right.energy is not None else mass
+    yield "mass matrix in float32", mass.astype(np.float32).astype(float)
 
 
 def _misread_parts(mass: Floats, added: Floats) -> Iterator[tuple[str, Any]]:
@@ -221,6 +233,7 @@ def families_of_bodies(answer: Answer, sizes: Sizes) -> Iterator[Family]:
         ("masses, m r and moments of inertia", masses + arm + moments),
     ):
         yield from _each(right, name, numbers)
+    yield _of_mass_alone(right, "coupling by the centre of mass (m r)", arm)
     munk = [coriolis(0 * mass[:3], munk=number.along[:3]) for number in masses]
     yield _of_coriolis(right, "three masses in the Munk moment alone", masses, munk)
     yield from _rigid_alone(right, scale)
@@ -274,7 +287,7 @@ def _entries_with(i: int, pair: tuple[int, int]) -> str:
 def _of_parts(right: Equations, added: Floats) -> Iterator[Family]:
     """Yield other values of the keys of a rigid body beside its added mass: mass, and centre of mass."""
     rigid = right.mass - added
-    heavy, arm = float(rigid[0, 0]), np.array([rigid[5, 1], rigid[3, 2], rigid[4, 0]]) / rigid[0, 0]
+    heavy, arm = float(rigid[0, 0]), _arm(right)
     size = np.sqrt(np.trace(rigid[3:, 3:]) / heavy)
     about_centre = rigid[3:, 3:] - _steiner(heavy, arm)
 
@@ -294,6 +307,12 @@ def _of_parts(right: Equations, added: Floats) -> Iterator[Family]:
         labels = tuple(names[k] for k in places)
         own = partial(changes, places=places)
         yield Family(name, "part of the body", values[places], scales[places], own, labels)
+
+
+def _arm(right: Equations) -> Floats:
+    """Return the centre of mass of a scene that has its added mass apart."""
+    rigid = right.mass if right.added is None else right.mass - right.added
+    return np.asarray(np.array([rigid[5, 1], rigid[3, 2], rigid[4, 0]]) / rigid[0, 0])
 
 
 def _steiner(mass: float, arm: Floats) -> Floats:
@@ -342,6 +361,15 @@ def _of_coriolis(
     own = products or [coriolis_of(each) for each in along]
     extra = [right.basis.factors(products=each) for each in own]
     return linear(right, name, "Coriolis matrix", scales, values, labels, extra=extra)
+
+
+def _of_mass_alone(right: Equations, name: str, numbers: list[_Number]) -> Family:
+    """Return the family of another mass matrix beside the right Coriolis terms."""
+    labels, values, scales, along = zip(*numbers, strict=True)
+    extra = [-right.basis.factors(products=coriolis_of(each)) for each in along]
+    kind = "Coriolis matrix"
+    name = f"{name} in the mass matrix alone"
+    return linear(right, name, kind, scales, values, labels, mass=along, extra=extra)
 
 
 def _label(n: int, i: int, k: int) -> str:
