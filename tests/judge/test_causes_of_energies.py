@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -163,16 +164,14 @@ VELOCITIES = VEHICLE[VEHICLE.index("linear_velocity") : VEHICLE.index("[time]")]
 BY_IMPULSES = VEHICLE.replace(VELOCITIES, IMPULSES)
 
 
-@pytest.mark.parametrize("has_momenta", [True, False])
 @pytest.mark.parametrize(
-    ("text", "simulated"),
+    ("text", "simulated", "has_momenta"),
     by_turns(
         [
-            (VEHICLE, BY_IMPULSES),
-            (BY_IMPULSES, BY_IMPULSES),
-            (VEHICLE, VEHICLE),
-            (BY_IMPULSES, VEHICLE),
-        ]
+            (VEHICLE, BY_IMPULSES, False),
+            *product((BY_IMPULSES, VEHICLE), (BY_IMPULSES, VEHICLE), (True, False)),
+        ],
+        20,
     ),
 )
 def test_another_body_starts_with_what_the_first_row_shows(

@@ -72,11 +72,10 @@ def euler(kind: str, t: float, z: np.ndarray[Any, Any], h: float) -> np.ndarray[
     by_turns(
         [
             ("hold", rk4, 1, "truncation of order 4: RK4, h = 0.1"),
-            ("hold", rk4, 4, "truncation of order 4: RK4, h = 0.025"),
             ("linear", rk4, 1, "truncation of order 4: RK4, h = 0.1"),
+            ("hold", rk4, 4, "truncation of order 4: RK4, h = 0.025"),
             ("hold", euler, 2, "explicit gyroscopic step: explicit Euler, h = 0.05"),
         ],
-        2,
     ),
 )
 def test_steps_over_the_knots_of_a_table_are_named(

@@ -24,8 +24,8 @@ added_mass = [1.5, 8, 10, 0.05, 0.6, 0.4]
 linear_velocity = [0.8, -0.1, 0.2]
 angular_velocity = [0.3, -0.2, 0.5]
 [time]
-end = 4
-samples = 41
+end = 2
+samples = 21
 """
 SCENE = read(VEHICLE, "vehicle")
 TIMES = list(SCENE.clock.instants)

@@ -88,16 +88,31 @@ def test_a_motion_that_is_not_reached_from_its_own_start_has_no_cause(
 
 @pytest.mark.parametrize(
     ("kind", "words"),
-    [
-        ("switch missed", "switch at t = 1.072 missed; leaves"),
-        ("rate of the current left out", "the rate of the current in body axes is left out of the"),
-        ("C_A over ground", "the Coriolis terms of the added mass take the velocity over ground"),
-        ("added mass over ground", "the added mass moves over ground, not through the water: M_A"),
-        ("weight turned by R", "weight and buoyancy turned the wrong way, by R; "),
-        ("drag along space axes", "drag of force and couple by coefficients along space axes; "),
-        ("slerp", "linear interpolation and slerp of the attitude between exact rows: every "),
-        ("clock that steps", "the clock is in time, and late by "),
-    ],
+    by_turns(
+        [
+            ("switch missed", "switch at t = 1.072 missed; leaves"),
+            (
+                "rate of the current left out",
+                "the rate of the current in body axes is left out of the",
+            ),
+            (
+                "C_A over ground",
+                "the Coriolis terms of the added mass take the velocity over ground",
+            ),
+            (
+                "added mass over ground",
+                "the added mass moves over ground, not through the water: M_A",
+            ),
+            ("weight turned by R", "weight and buoyancy turned the wrong way, by R; "),
+            (
+                "drag along space axes",
+                "drag of force and couple by coefficients along space axes; ",
+            ),
+            ("slerp", "linear interpolation and slerp of the attitude between exact rows: every "),
+            ("clock that steps", "the clock is in time, and late by "),
+        ],
+        3,
+    ),
 )
 def test_one_fault_has_one_sentence(kind: str, words: str) -> None:
     """A thrust that does not end is a switch that was missed, and terms over ground are no other number."""
