@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,9 @@ from builders.scenes import text_of
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from builders.turns import by_turns
 from scipy.spatial.transform import Rotation
+
+from taylor_verify import check
+from taylor_verify.scenes.reading.reader import read
 
 DRAG = ["-0.1*w1", "-0.1*w2", "0.08 - 0.1*w3"]
 DECAY = text_of({"inertia": [2, 1.5, 1.2], "moment": DRAG}, {"omega": [0, 0, 1]}, 10, 51)
@@ -117,3 +121,63 @@ def test_the_error_of_a_steady_turn_is_no_frame_that_turns(tmp_path: Path) -> No
     assert titles(tmp_path, STEADY, spun(1e-4 * FIRST.apply([0, 0, 1]))) == []
     (title,) = titles(tmp_path, STEADY, spun(np.array([0, 1e-4, 0])))
     assert title.startswith("attitude is relative to a frame that turns")
+
+
+SURGE = """
+title = "A vehicle that speeds up"
+model = "kirchhoff"
+track = ["attitude", "centre"]
+[body]
+mass_matrix = [[30, 0, 0, 0, 0, 0], [0, 60, 0, 0, 0, 0], [0, 0, 60, 0, 0, 0],
+               [0, 0, 0, 0.3, 0, 0], [0, 0, 0, 0, 8, 0], [0, 0, 0, 0, 0, 8]]
+force = ["12 - 9*u1", "-60*u2", 0]
+couple = [0, 0, "-5*w3"]
+[initial]
+linear_velocity = [0.2, 0, 0]
+angular_velocity = [0, 0, 0]
+[time]
+end = 8
+samples = 41
+"""
+
+
+def surge(mass: float, drag: float, every: int) -> dict[str, Any]:
+    """The columns of so many steps of explicit Euler from row to row, or of the exact motion, on a line."""
+    times = np.linspace(0, 8, 41)
+    u, c = np.full(41, 0.2), np.zeros(41)
+    rate, end = drag / mass, 12 / drag
+    h = 0.2 / (every or 1)
+    for k in range(40):
+        steps, whole = (1 - rate * h) ** np.arange(every + 1), np.exp([0.0, -0.2 * rate])
+        powers = steps if every else whole
+        before = u[k] - end
+        u[k + 1] = end + before * powers[-1]
+        way = h * np.sum(powers[:-1]) if every else (1 - powers[-1]) / rate
+        c[k + 1] = c[k] + 0.2 * end + before * way
+    zeros = np.zeros(41)
+    vectors = {"linear_velocity": u, "omega": zeros, "centre": c}
+    rows = {name: np.stack([own, zeros, zeros], axis=1) for name, own in vectors.items()}
+    return {"t": times, **rows, "attitude": np.broadcast_to(np.eye(3), (41, 3, 3))}
+
+
+@pytest.mark.parametrize(
+    ("mass", "drag", "every", "words"),
+    by_turns(
+        [
+            (33, 9, 2, None),
+            (30, 9, 2, "explicit Euler, h = 0.1"),
+            (33, 9, 0, "M_11 = 33 for 30"),
+            (30, 10, 2, "`9` in force 1, 12 - 9*u1, = 10 for 9 (+11.1 %), beside steps of"),
+        ],
+        2,
+    ),
+)
+def test_on_a_line_a_number_is_said_if_it_was_written(
+    mass: float, drag: float, every: int, words: str | None
+) -> None:
+    """Velocities along one direction tell a body beside a coarse step from no number of the equations."""
+    causes = check(
+        read(SURGE, "surge"), surge(mass, drag, every), tolerance=1e-9, partial=True
+    ).causes
+    titles = [cause.sentence for cause in causes]
+    assert [title[: len(words or "")] for title in titles] == ([words] if words else [])

@@ -23,6 +23,9 @@ _WRITTEN: Final = 5
 _NEAR: Final = 3e-8
 _ROUNDINGS: Final = 3.0
 _FAR: Final = 1e-6
+# Another gravity is one of these, or a number with so few digits.
+GRAVITY: Final = "factor of weight and buoyancy"
+_GRAVITIES: Final = (9.81, 9.80665, 9.8, 1.0)
 # Nor is a step, or the damping of a step, below this part.
 _SLIGHT: Final = 1e-6
 
@@ -96,6 +99,8 @@ def has_few_digits(candidate: Candidate, floor: float) -> bool:
     if candidate.kind == "clock":
         # A factor of time may be written either way up.
         return any(_is_written(x, 1.0, floor) for x in (pairs[0][0], 1 / (pairs[0][0] or 1.0)))
+    if candidate.family.name == GRAVITY:
+        return any(_is_written(pairs[0][0] * g, g, floor) for g in _GRAVITIES)
     return not candidate.count or all(_is_written(x, right, floor) for x, right in pairs)
 
 

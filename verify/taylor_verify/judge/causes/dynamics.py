@@ -189,9 +189,9 @@ class Search:
         if is_stepped or cause:
             return cause
         is_method = any(candidate.kind == "method" for candidate in candidates)
-        if not (is_blind or is_method) and self.floor * _PAIR_ROUNDINGS < 1:
+        if not is_method and self.floor * _PAIR_ROUNDINGS < 1:
             with self.answer.budget.share(1 / 2):
-                cause = self.cause(self._telling([*self._pairs(linear)]), PAIR)
+                cause = self.cause(self._telling([*self._pairs(linear)], is_blind), PAIR)
         return cause or self._beside_steps(linear, stride)
 
     def _written(self, candidates: Sequence[Candidate]) -> list[Candidate]:
@@ -265,10 +265,12 @@ class Search:
         few = self.answer.thinned(FIT_ROWS)
         return off_pace(few) < max(_OFF_PACE, _OFF_ROUNDINGS * self.floor)
 
-    def _telling(self, pairs: list[Candidate]) -> list[Candidate]:
+    def _telling(self, pairs: list[Candidate], is_blind: bool) -> list[Candidate]:
         """Return the pairs that a method does not imitate: it changes the pace, and damps, at once."""
         kinds = ({part.kind for part in pair.family.parts} for pair in pairs)
-        has_pace = any("clock" in own or own == {"damping", "gyroscopic term"} for own in kinds)
+        has_pace = is_blind or any(
+            "clock" in own or own == {"damping", "gyroscopic term"} for own in kinds
+        )
         return [p for p in pairs if has_few_digits(p, self.floor)] if has_pace else pairs
 
     def _candidate(self, family: Family, fit: Fitted) -> Candidate:

@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.candidate import GRAVITY
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.changed_texts import (
     NAME,
@@ -368,7 +369,7 @@ def _put_drag(loads: Loads, drag: Callable[[str], set[int]], key: str, value: fl
 def _of_gravity(loads: Loads) -> Iterator[Number]:
     """Yield the factor of weight and buoyancy together, as another acceleration of gravity makes it."""
     if sum(any(hung.force) for hung in loads.hung) > 1:
-        yield Number("factor of weight and buoyancy", 1.0, partial(_put_gravity, loads))
+        yield Number(GRAVITY, 1.0, partial(_put_gravity, loads))
 
 
 def _put_gravity(loads: Loads, value: float) -> Loads:
