@@ -239,7 +239,7 @@ HUNG = VEHICLE.replace(
 def test_a_centre_of_mass_at_the_origin_is_so_in_the_weight_too(
     in_weight: bool, tmp_path: Path
 ) -> None:
-    """One number of a simulator is at two places of a scene; the other way the body alone is named."""
+    """A scene has at two places what a simulator has once; without the weight the body alone is named."""
     own, added = body()
     mass = np.kron(np.eye(2), np.ones((3, 3))) * own + added
     mass[3:, 3:] = np.diag([0.12, 4.2, 4.2]) + added[3:, 3:]

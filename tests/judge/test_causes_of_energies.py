@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import text_of
 from builders.turns import by_turns
 
 from taylor_verify import check, exact
@@ -136,32 +137,22 @@ def test_several_coefficients_are_named_and_their_scene_passes(
     assert judged_by(printed(cause.sentence, SOLID)).passed
 
 
-VEHICLE = """
-title = "A vehicle"
-model = "kirchhoff"
-track = ["attitude", "centre"]
-[body]
-mass_matrix = [
-  [3, 0, 0, 0, 0.1, 0],
-  [0, 5, 0, -0.1, 0, -0.2],
-  [0, 0, 6, 0, 0.2, 0],
-  [0, -0.1, 0, 0.3, 0, 0],
-  [0.1, 0, 0.2, 0, 0.8, 0],
-  [0, -0.2, 0, 0, 0, 0.7],
-]
-[initial]
-linear_velocity = [1.5, -0.1, 0.2]
-angular_velocity = [0.1, 0.3, 0.2]
-[time]
-end = 4
-samples = 33
-"""
-# The impulses of this start.
-IMPULSES = """linear_impulse = [4.53, -0.55, 1.26]
-angular_impulse = [0.04, 0.43, 0.16]
-"""
-VELOCITIES = VEHICLE[VEHICLE.index("linear_velocity") : VEHICLE.index("[time]")]
-BY_IMPULSES = VEHICLE.replace(VELOCITIES, IMPULSES)
+MASSES = {
+    "mass_matrix": [
+        [3, 0, 0, 0, 0.1, 0],
+        [0, 5, 0, -0.1, 0, -0.2],
+        [0, 0, 6, 0, 0.2, 0],
+        [0, -0.1, 0, 0.3, 0, 0],
+        [0.1, 0, 0.2, 0, 0.8, 0],
+        [0, -0.2, 0, 0, 0, 0.7],
+    ]
+}
+# One start, by velocities and by the impulses that these have.
+VELOCITIES = {"linear_velocity": [1.5, -0.1, 0.2], "angular_velocity": [0.1, 0.3, 0.2]}
+IMPULSES = {"linear_impulse": [4.53, -0.55, 1.26], "angular_impulse": [0.04, 0.43, 0.16]}
+VEHICLE, BY_IMPULSES = (
+    text_of(MASSES, start, 4, 33, "attitude", "centre") for start in (VELOCITIES, IMPULSES)
+)
 
 
 @pytest.mark.parametrize(

@@ -123,22 +123,12 @@ def test_the_error_of_a_steady_turn_is_no_frame_that_turns(tmp_path: Path) -> No
     assert title.startswith("attitude is relative to a frame that turns")
 
 
-SURGE = """
-title = "A vehicle that speeds up"
-model = "kirchhoff"
-track = ["attitude", "centre"]
-[body]
-mass_matrix = [[30, 0, 0, 0, 0, 0], [0, 60, 0, 0, 0, 0], [0, 0, 60, 0, 0, 0],
-               [0, 0, 0, 0.3, 0, 0], [0, 0, 0, 0, 8, 0], [0, 0, 0, 0, 0, 8]]
-force = ["12 - 9*u1", "-60*u2", 0]
-couple = [0, 0, "-5*w3"]
-[initial]
-linear_velocity = [0.2, 0, 0]
-angular_velocity = [0, 0, 0]
-[time]
-end = 8
-samples = 41
-"""
+SURGE = text_of(
+    {"mass_matrix": np.diag([30, 60, 60, 0.3, 8, 8]).tolist()}
+    | {"force": ["12 - 9*u1", "-60*u2", 0], "couple": [0, 0, "-5*w3"]},
+    {"linear_velocity": [0.2, 0, 0], "angular_velocity": [0, 0, 0]},
+    *(8, 41, "attitude", "centre"),
+)
 
 
 def surge(mass: float, drag: float, every: int) -> dict[str, Any]:

@@ -6,27 +6,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import text_of
 from builders.turns import by_turns
 
 from taylor_verify import check, exact
 from taylor_verify.scenes.reading.reader import read
 
-VEHICLE = """
-title = "A vehicle"
-model = "kirchhoff"
-track = ["attitude", "centre"]
-[body]
-mass = 12.5
-inertia = [0.3, 0.9, 1.1]
-centre_of_mass = [0.05, -0.02, 0.03]
-added_mass = [1.5, 8, 10, 0.05, 0.6, 0.4]
-[initial]
-linear_velocity = [0.8, -0.1, 0.2]
-angular_velocity = [0.3, -0.2, 0.5]
-[time]
-end = 2
-samples = 21
-"""
+VEHICLE = text_of(
+    {"mass": 12.5, "inertia": [0.3, 0.9, 1.1], "centre_of_mass": [0.05, -0.02, 0.03]}
+    | {"added_mass": [1.5, 8, 10, 0.05, 0.6, 0.4]},
+    {"linear_velocity": [0.8, -0.1, 0.2], "angular_velocity": [0.3, -0.2, 0.5]},
+    *(2, 21, "attitude", "centre"),
+)
 SCENE = read(VEHICLE, "vehicle")
 TIMES = list(SCENE.clock.instants)
 MOTION = {name: v.astype(float) for name, v in exact(SCENE, TIMES, 17).quantities.items()}

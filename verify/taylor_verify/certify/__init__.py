@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from taylor_verify import types
@@ -16,7 +16,7 @@ def certify(
     degree: int | None = None,
     nodes: Any = None,
     interpolation: str | None = None,
-    columns: Mapping[str, str] | None = None,
+    columns: Mapping[str, str] | Sequence[tuple[str, str]] = (),
 ) -> types.Certificate:
     """Return proven bounds of the error of a dense answer, for all times of the scene's span.
 
@@ -42,7 +42,7 @@ def certify(
         What a program makes of its samples: ``linear``, ``cubic`` (the spline of SciPy's CubicSpline) or
         ``hermite`` (cubics with the slopes of the scene's equations).
     columns
-        The columns of samples by our names, as in `check`.
+        The columns of samples by our names, as in `check`, or pairs of names.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def certify(
     scene = as_scene(scene)
     if tolerances(tolerance, [scene]).each:
         raise ValueError("expected one number for all quantities, got several @ tolerance")
-    wanted = tuple((columns or {}).items())
+    wanted = tuple(columns.items() if isinstance(columns, Mapping) else columns)
     pieces = pieces_of(answer, scene, degree, nodes, interpolation, wanted)
     given = pose_as_stored(scene, rung("f64")).given
     certificate = certificate_of(given, pieces, tolerance)

@@ -43,6 +43,8 @@ def pieces_of(
         if document is None:
             return of_samples(read(answer, columns, scene), scene, interpolation)
         answer = document
+    if columns and interpolation is None:
+        raise refusal("columns with samples and their interpolation", "them with pieces", "columns")
     if isinstance(answer, Pieces):
         return answer
     if interpolation is not None:

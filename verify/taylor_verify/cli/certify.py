@@ -41,7 +41,7 @@ def answer(options: argparse.Namespace) -> Answer:
                 options.file,
                 tolerance,
                 interpolation=options.interpolation,
-                columns=dict(request(options.columns or ())),
+                columns=request(options.columns or ()),
             )
     messages = [certificate.because] if certificate.because else []
     status = PASS if certificate.passed else UNDECIDED if certificate.is_undecided else FAIL

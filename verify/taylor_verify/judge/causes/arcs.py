@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -37,6 +37,8 @@ _ORDER: Final = 2.0**8
 _SMOOTH: Final = 2.0**4
 # Times so far from a switch, relative to the time, are on one side of it whatever rounds.
 _INSIDE: Final = 2.0**-50
+# A switch at the end of an arc is no farther from it than by this part.
+_AT_END: Final = 1e-9
 # Sets of parameters in one flow, and states: more do not fit the caches.
 _SETS: Final = 48
 _STATES: Final = 2400
@@ -208,6 +210,14 @@ class Arcs(Evidence):
     @cached_property
     def spans(self) -> Floats:
         return self.answer.times[self.last] - self.since
+
+    @cached_property
+    def have_switch(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """True for each arc in which a load switches, or at whose end."""
+        begin, end = np.sort([self.since, self.since + self.spans], axis=0)
+        at_end, switches = _AT_END * (end - begin), self.answer.right.switches
+        before, until = (np.searchsorted(switches, time + at_end) for time in (begin, end))
+        return np.asarray(before != until)
 
     @cached_property
     def end(self) -> Floats:

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes import starts
+from taylor_verify.judge.causes.arcs import row_to_row
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import Dynamics
@@ -171,8 +172,10 @@ def _of_moving_part(answer: Answer) -> list[Cause]:
         wrong = starts.wrong_arcs(defects)
         has_parts = len(answer.right.switches) > 0 or bool(bounds(answer.right.loads))
         is_part = has_parts and 0 < 2 * len(wrong) < len(defects)
-        causes = _some(_over_switches(answer, search, wrong)) if is_part else []
-        causes = causes or (_some(in_numbers(answer, wrong)) if is_part else [])
+        of_part = (
+            _over_switches(answer, search, wrong) or in_numbers(answer, wrong) if is_part else None
+        )
+        causes = _some(of_part)
         causes = causes or causes_in_pieces(answer, defects, causes_of) or _some(search.cause())
         return causes or _from_own_start(answer)
     with suppress(Spent):
@@ -182,10 +185,7 @@ def _of_moving_part(answer: Answer) -> list[Cause]:
 
 def _over_switches(answer: Answer, search: Dynamics, wrong: Places) -> Cause | None:
     """Return the method whose steps go over the switches, where each of several wrong arcs has one."""
-    times, switches = answer.times, answer.right.switches
-    ends = np.sort([times[wrong], times[wrong + 1]], axis=0)
-    count = np.searchsorted(switches, ends[1], side="right") - np.searchsorted(switches, ends[0])
-    if len(wrong) < _SEVERAL or np.mean(count > 0) < _MOST_WRONG:
+    if len(wrong) < _SEVERAL or np.mean(row_to_row(answer).have_switch[wrong]) < _MOST_WRONG:
         return None
     with answer.budget.share(1 / 4):
         return search.of_steps()

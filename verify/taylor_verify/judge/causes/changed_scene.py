@@ -61,13 +61,13 @@ def changed_start(answer: Answer, mass: Floats) -> str:
     """Return the keys of [initial] where another body starts otherwise than the scene writes; else none."""
     if answer.keeps_momenta == answer.writes_momenta:
         return ""
-    momenta = answer.momenta(mass)
-    names = {3: ("omega",), 6: ("linear_velocity", "angular_velocity")}[answer.n]
-    start = answer.start.v[0]
-    if answer.keeps_momenta and answer.n == 6:
-        names, start = ("linear_impulse", "angular_impulse"), momenta
+    names: tuple[str, ...] = ("omega",)
+    if answer.n == 3:
+        start = answer.first(mass)
     elif answer.keeps_momenta:
-        start = np.linalg.solve(mass, momenta)
+        names, start = ("linear_impulse", "angular_impulse"), answer.momenta(mass)
+    else:
+        names, start = ("linear_velocity", "angular_velocity"), answer.start.v[0]
     parts = zip(names, start.reshape(-1, 3), strict=True)
     return "; ".join(f"{name} = {_list(map(number, part))}" for name, part in parts)
 

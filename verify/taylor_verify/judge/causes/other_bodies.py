@@ -50,10 +50,9 @@ def faults_of_bodies(right: Equations) -> Iterator[Family]:
         is_body = np.all(np.linalg.eigvalsh(mass) > 0)
         if is_body:
             yield fault(name, "body", {"mass": mass})
-            if name in _OF_CENTRE and (
-                loads := hung_at_centre(right.loads, _arm(right), _OF_CENTRE[name])
-            ):
-                assert right.acting is not None
+            factor = _OF_CENTRE.get(name)
+            loads = None if factor is None else hung_at_centre(right.loads, _centre(right), factor)
+            if loads is not None and right.acting is not None:
                 changes = {"mass": mass, "acting": right.acting.of(loads)}
                 yield fault(f"{name}, in the weight too", "body", changes)
         # Wrong axes are wrong in both.
@@ -107,8 +106,8 @@ def _misread_masses(right: Equations) -> Iterator[tuple[str, Any]]:
     yield "coupling left out", _coupled(mass, 0.0)
     yield "coupling with the other sign", _coupled(mass, -1.0)
     yield "inverse masses cut to their diagonal", np.diag(1 / np.diag(right.inverse))
-    single = np.linalg.inv(energy.astype(np.float32).astype(float))
-    yield "energy in float32", single if right.energy is not None else mass
+    if right.energy is not None:
+        yield "energy in float32", np.linalg.inv(energy.astype(np.float32).astype(float))
     yield "mass matrix in float32", mass.astype(np.float32).astype(float)
 
 
@@ -287,7 +286,7 @@ def _entries_with(i: int, pair: tuple[int, int]) -> str:
 def _of_parts(right: Equations, added: Floats) -> Iterator[Family]:
     """Yield other values of the keys of a rigid body beside its added mass: mass, and centre of mass."""
     rigid = right.mass - added
-    heavy, arm = float(rigid[0, 0]), _arm(right)
+    heavy, arm = float(rigid[0, 0]), _centre(right)
     size = np.sqrt(np.trace(rigid[3:, 3:]) / heavy)
     about_centre = rigid[3:, 3:] - _steiner(heavy, arm)
 
@@ -309,10 +308,16 @@ def _of_parts(right: Equations, added: Floats) -> Iterator[Family]:
         yield Family(name, "part of the body", values[places], scales[places], own, labels)
 
 
-def _arm(right: Equations) -> Floats:
+def _centre(right: Equations) -> Floats:
     """Return the centre of mass of a scene that has its added mass apart."""
-    rigid = right.mass if right.added is None else right.mass - right.added
-    return np.asarray(np.array([rigid[5, 1], rigid[3, 2], rigid[4, 0]]) / rigid[0, 0])
+    assert right.added is not None
+    rigid = right.mass - right.added
+    return np.asarray(arm_of(rigid) / rigid[0, 0])
+
+
+def arm_of(matrix: Floats) -> Floats:
+    """Return r of a matrix whose lower left block is r x."""
+    return np.array([matrix[5, 1], matrix[3, 2], matrix[4, 0]])
 
 
 def _steiner(mass: float, arm: Floats) -> Floats:
@@ -367,9 +372,8 @@ def _of_mass_alone(right: Equations, name: str, numbers: list[_Number]) -> Famil
     """Return the family of another mass matrix beside the right Coriolis terms."""
     labels, values, scales, along = zip(*numbers, strict=True)
     extra = [-right.basis.factors(products=coriolis_of(each)) for each in along]
-    kind = "Coriolis matrix"
-    name = f"{name} in the mass matrix alone"
-    return linear(right, name, kind, scales, values, labels, mass=along, extra=extra)
+    words = f"{name} in the mass matrix alone"
+    return linear(right, words, _KIND, scales, values, labels, mass=along, extra=extra)
 
 
 def _label(n: int, i: int, k: int) -> str:

@@ -12,7 +12,7 @@ from taylor_verify.judge.causes.fitted_bodies import entries
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.inexact_conventions import SIGNED, axes, numbers
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.other_bodies import faults_of_bodies
+from taylor_verify.judge.causes.other_bodies import arm_of, faults_of_bodies
 from taylor_verify.words.causes import with_numbers
 
 # Directions in which the truth moves by less than this part tell no entry, and too few rows tell none.
@@ -62,7 +62,7 @@ def _of_vectors(answer: Answer, factors: Floats) -> str:
     if np.all(np.abs(factors - np.kron([[0, 1], [1, 0]], np.eye(3))) < _SAME * size):
         return f"{first} and {second} stand in each other's place"
     turn = factors - np.eye(6)
-    arm = np.array([turn[5, 1], turn[3, 2], turn[4, 0]])
+    arm = arm_of(turn)
     about = np.zeros((6, 6))
     about[3:, :3] = np.cross(arm, np.eye(3)).T
     if answer.right.has_momenta and np.all(np.abs(turn - about) < _SAME * size):

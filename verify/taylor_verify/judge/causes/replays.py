@@ -62,8 +62,6 @@ _FITS: Final = 4
 _METHODS: Final = 3
 # Numbers of steps that are tried where the arcs without a switch are too exact to tell any.
 _COUNTS: Final = (1, 2, 4, 10)
-# A switch at the end of an arc is no farther from it than by this part.
-_AT_END: Final = 1e-9
 # This part of the work is for replays, and the rest for proofs.
 _TO_REPLAY: Final = 0.75
 # Of so many rows from the start.
@@ -297,12 +295,8 @@ class _Replays:
 
         Steps over a switch, or up to it, leave an error that does not end as h^p.
         """
-        arcs, n = self.arcs, self.arcs.answer.n
-        begin, end = np.sort([arcs.since, arcs.since + arcs.spans], axis=0)
-        at_end, switches = _AT_END * (end - begin), arcs.answer.right.switches
-        count = np.searchsorted(switches, end + at_end) - np.searchsorted(switches, begin + at_end)
-        is_smooth = count == 0 if len(switches) and not self.bases else np.ones(len(begin))
-        return np.tile(is_smooth.astype(float), n)
+        is_smooth = ~self.arcs.have_switch | bool(self.bases)
+        return np.tile(is_smooth.astype(float), self.arcs.answer.n)
 
     def _beside(self, place: int) -> Sequence[Floats]:
         none = np.zeros((self.arcs.answer.n * len(self.arcs.first), 0))
