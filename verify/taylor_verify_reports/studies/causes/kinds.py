@@ -21,6 +21,7 @@ from taylor_verify_reports.studies.causes.kind import (
     right,
     setting,
 )
+from taylor_verify_reports.studies.causes.kinds_of_bodies import OF_BODIES, become
 from taylor_verify_reports.studies.causes.kinds_of_loads import LATER_OF_LOADS, OF_LOADS
 from taylor_verify_reports.studies.causes.kinds_of_rows import (
     AT_WHOLE_STEPS,
@@ -28,7 +29,11 @@ from taylor_verify_reports.studies.causes.kinds_of_rows import (
     LATER_OF_ROWS,
     OF_ROWS,
 )
-from taylor_verify_reports.studies.causes.kinds_of_steps import DAMPING_STEP, OF_STEPS
+from taylor_verify_reports.studies.causes.kinds_of_steps import (
+    DAMPING_STEP,
+    LATER_OF_STEPS,
+    OF_STEPS,
+)
 from taylor_verify_reports.studies.causes.simulated import (
     Law,
     Rows,
@@ -68,10 +73,6 @@ def _three(s: Sample, d: Draw, size: float) -> Floats:
     return part
 
 
-def _body(own: Law, mass: Floats) -> None:
-    own.mass, own.coriolis, own.munk = mass, mass.copy(), mass[:3].copy()
-
-
 def _coriolis(own: Law, matrix: Floats) -> None:
     own.coriolis, own.munk = matrix, matrix[:3].copy()
 
@@ -79,7 +80,7 @@ def _coriolis(own: Law, matrix: Floats) -> None:
 def _diagonal_entry(own: Law, s: Sample, d: Draw, size: float) -> None:
     place, mass = int(d.integers(s.n)), s.mass.copy()
     mass[place, place] *= 1 + size / 4
-    _body(own, mass)
+    become(own, mass)
 
 
 def _coriolis_entry(own: Law, s: Sample, d: Draw, size: float) -> None:
@@ -89,7 +90,7 @@ def _coriolis_entry(own: Law, s: Sample, d: Draw, size: float) -> None:
 
 
 def _products(own: Law, s: Sample, d: Draw, size: float) -> None:
-    _body(own, np.diag(np.diag(s.mass)))
+    become(own, np.diag(np.diag(s.mass)))
 
 
 def _factor(own: Law, s: Sample, d: Draw, size: float) -> None:
@@ -395,4 +396,6 @@ KINDS: Final = (
     AT_WHOLE_STEPS,
     *LATER_OF_ROWS,
     *LATER_OF_LOADS,
+    *LATER_OF_STEPS,
+    *OF_BODIES,
 )

@@ -128,6 +128,8 @@ def _one_drag_less(v: Any, s: Any, size: float) -> Any:
 
 _V: Final = ("vehicle",)
 _S: Final = ("sampled",)
+_U: Final = ("surge",)
+_SURGE: Final = ("the number ", "in force 1", "quadratic drag")
 _DRAG: Final = ("terms with velocities", "all quadratic drag")
 _THRUST: Final = ("in force 1", "terms of force without", "from t =", "right up to", "switch at")
 _PULSES: Final = ("loads late",)
@@ -232,4 +234,15 @@ LATER_OF_LOADS: Final = (
     Kind("added mass over ground", ("moves over ground",), _over_ground("rate", "C_A"), _V),
     Kind("weight turned by R", ("turned the wrong way",), _with(hangs_back=True), _V),
     Kind("drag along space axes", ("along space axes",), _with(is_drag_in_space=True), _V),
+    Kind("lag left out", ("without its lag", "moment"), _continuous, ("lag",)),
+    Kind(
+        "lag of another time constant",
+        ("the number ",),
+        _with(constant=lambda a, s, e: (1 + e) * a.constant),
+        ("lag",),
+    ),
+    Kind("drag of another size in surge", _SURGE, _with(drag=lambda a, s, e: 1.5 * a.drag), _U),
+    Kind(
+        "thrust of another size in surge", _SURGE, _with(thrust=lambda a, s, e: 1.5 * a.thrust), _U
+    ),
 )

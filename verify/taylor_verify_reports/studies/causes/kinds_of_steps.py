@@ -9,7 +9,13 @@ import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
 from taylor_verify_reports.studies.causes.kind import RIGID, WITH_RATES, Kind
-from taylor_verify_reports.studies.causes.simulated import Rows, law, stepped, turned
+from taylor_verify_reports.studies.causes.simulated import (
+    Rows,
+    law,
+    stepped,
+    stepped_together,
+    turned,
+)
 from taylor_verify_reports.studies.causes.stepping import (
     Draw,
     Make,
@@ -17,6 +23,7 @@ from taylor_verify_reports.studies.causes.stepping import (
     by,
     by_rates,
     euler,
+    heun,
     mean,
     rk4,
     turn,
@@ -96,7 +103,6 @@ def _loaded(s: Sample, d: Draw, size: float) -> Rows:
 
 def _uneven(s: Sample, d: Draw, size: float) -> Rows:
     """Return Heun steps that do not divide the rows."""
-    heun = _tableau([0.5, 0.5], [1.0])
     h = float(s.times[1]) / d.uniform(1.2, 3.8)
 
     def step(f: _Rate, v: Floats, span: float) -> Floats:
@@ -154,4 +160,18 @@ OF_STEPS: Final = (
 # A kind that came later stands last among all: a kind is drawn by its place.
 DAMPING_STEP: Final = Kind(
     "damping step", ("damping step", "attitude turned by"), by(_damped, mean)
+)
+
+
+def _together(step: _Step) -> Make:
+    return lambda s, d, size: stepped_together(s, step, int(d.integers(1, 5)))
+
+
+_OF_ALL: Final = ("gradient", "vehicle", "pulse", "sampled", "lag", "surge")
+_TURN: Final = "attitude q + h q omega / 2"
+LATER_OF_STEPS: Final = (
+    Kind("RK4 of all states", ("RK4",), _together(rk4), _OF_ALL),
+    Kind("Heun of all states", ("Heun",), _together(heun), _OF_ALL),
+    Kind("midpoint of all states", ("midpoint",), _together(_STEPS["midpoint"]), _OF_ALL),
+    Kind("explicit Euler of all states", ("explicit Euler", _TURN), _together(euler), _OF_ALL),
 )

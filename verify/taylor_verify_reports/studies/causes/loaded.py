@@ -11,7 +11,7 @@ import numpy as np
 from taylor_verify_reports.studies.causes.bodies import SORTS, Acting, Floats, Sample, sample
 from taylor_verify_reports.studies.causes.simulated import cross, rotation
 
-LOADED: Final = ("solid", "vehicle", "gradient", "pulse", "sampled")
+LOADED: Final = ("solid", "vehicle", "gradient", "pulse", "sampled", "lag", "surge")
 
 
 @dataclass(frozen=True)
@@ -166,6 +166,51 @@ class Controller:
         )
 
 
+@dataclass(frozen=True)
+class Lag:
+    """A moment that follows -k omega with a time constant."""
+
+    gain: float
+    constant: float
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """Lines of [body]."""
+        return ('moment = ["a1", "a2", "a3"]',)
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Lines behind [time]."""
+        rates = ", ".join(f'"(-{self.gain!r}*w{i} - a{i})/{self.constant!r}"' for i in (1, 2, 3))
+        return ("[states]", f"a = {{ start = [0, 0, 0], rate = [{rates}] }}")
+
+    @property
+    def acting(self) -> Acting:
+        """The same in numbers."""
+        return Acting(
+            lambda t, v, q, own: own,
+            np.zeros(3),
+            rate=lambda t, v, q, own: (-self.gain * v - own) / self.constant,
+        )
+
+
+@dataclass(frozen=True)
+class Surge:
+    """A thrust and a quadratic drag along axis 1."""
+
+    thrust: float
+    drag: float
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """Lines of [body]."""
+        return (f'force = ["{self.thrust!r} - {self.drag!r}*abs(u1)*u1", 0, 0]',)
+
+    def load(self, t: float, v: Floats, q: Floats, own: Floats) -> Floats:
+        """Return force and couple."""
+        return np.r_[self.thrust - self.drag * abs(v[0]) * v[0], np.zeros(5)]
+
+
 def any_sample(sort: str, draw: np.random.Generator) -> Sample:
     """Draw a body of any sort."""
     return sample(sort, draw) if sort in SORTS else _MADE[sort](draw)
@@ -252,10 +297,43 @@ def _sampled(draw: np.random.Generator) -> Sample:
     )
 
 
+def _lag(draw: np.random.Generator) -> Sample:
+    s = sample("free", draw)
+    gain, constant = np.round(draw.uniform(0.2, 0.8, 2), 3).tolist()
+    of = Lag(gain, constant)
+    return replace(
+        s,
+        sort="lag",
+        lines=of.lines,
+        tables=of.tables,
+        acting=of.acting,
+        source=of,
+        times=s.times[:40],
+    )
+
+
+def _surge(draw: np.random.Generator) -> Sample:
+    s = sample("fluid", draw)
+    thrust, drag = np.round(draw.uniform(0.2, 0.9, 2), 1).tolist()
+    of = Surge(thrust, drag)
+    return replace(
+        s,
+        sort="surge",
+        mass=np.diag(np.round(np.diag(s.mass), 2)),
+        v0=np.r_[np.round(s.v0[0], 2), np.zeros(5)],
+        lines=of.lines,
+        acting=Acting(of.load),
+        source=of,
+        times=np.round(0.2 * np.arange(30), 9),
+    )
+
+
 _MADE: Final = {
     "solid": _solid,
     "vehicle": _vehicle,
     "gradient": _gradient,
     "pulse": _pulse,
     "sampled": _sampled,
+    "lag": _lag,
+    "surge": _surge,
 }

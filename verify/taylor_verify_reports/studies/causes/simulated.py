@@ -194,6 +194,30 @@ def stepped(
     return _rows(sample.times, np.array(rows), used)
 
 
+def stepped_together(
+    sample: Sample, step: Callable[[Callable[[Floats], Floats], Floats, float], Floats], steps: int
+) -> Rows:
+    """Return the rows of a one-step method of v, q and own states at once; q is a unit after each step."""
+    used, n = law(sample), sample.n
+    acting = used.acting
+
+    def slope(z: Floats) -> Floats:
+        t, v, q, own = z[0], *np.split(z[1:], (n, n + 4))
+        own_rate = acting.rate(t, v, q / np.linalg.norm(q), own)
+        return np.concatenate([[1.0], rates(used, t, v, q, own), turned(q, v[-3:]), own_rate])
+
+    v, q, own = sample.v0, sample.q0 / np.linalg.norm(sample.q0), acting.start
+    rows = [np.concatenate([v, q])]
+    for begin, end in pairwise(sample.times):
+        own, h = acting.taken(begin, v, q, own), (end - begin) / steps
+        for k in range(steps):
+            z = step(slope, np.concatenate([[begin + k * h], v, q, own]), h)
+            v, q, own = np.split(z[1:], (n, n + 4))
+            q = q / np.linalg.norm(q)
+        rows.append(np.concatenate([v, q]))
+    return _rows(sample.times, np.array(rows), used)
+
+
 def _rows(times: Floats, z: Floats, law: Law) -> Rows:
     n = len(law.mass)
     q, c = z[:, n : n + 4], z[:, n + 4 :]
