@@ -46,6 +46,8 @@ _OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at res
 _AT_ONCE: Final = 0.03
 # The truth has left the start if it is so many roundings of the file away.
 _LEFT: Final = 30.0
+# Faults that are too many for this part of the work leave the rest to methods.
+_TO_FAULTS: Final = 3 / 4
 # So many arcs over a switch are no single switch that comes late.
 _SEVERAL: Final = 3
 _MOST_WRONG: Final = 0.75
@@ -163,9 +165,12 @@ def _enough(answer: Answer, cause: Cause) -> float:
 
 def _of_moving_part(answer: Answer) -> list[Cause]:
     """Return the causes of the moving part: a fault without numbers is nearer than a part of the run."""
-    search, simple = Dynamics(answer), None
-    with suppress(Spent):
+    search, simple, are_all = Dynamics(answer), None, False
+    with answer.budget.share(_TO_FAULTS):
         simple = search.without_numbers()
+        are_all = True
+    if not are_all:
+        return _some(search.of_steps())
     if simple is None:
         defects = starts.roundings(answer)
         # Another pulse is nearer than a part of the run without it.

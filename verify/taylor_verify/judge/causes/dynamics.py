@@ -59,6 +59,8 @@ _LINEAR: Final = 0.6
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
+# Families of which not all are fitted by a part of the work are left to methods, which have no number.
+_TO_FIT: Final = 2 / 3
 # Of the numbers that a fit may begin at, so many are tried: the best one may fit these arcs alone.
 _BEGINS: Final = 2
 # Methods are replayed over so many rows at most.
@@ -172,7 +174,10 @@ class Search:
         for group in self._groups(families, candidates):
             of_group = self._linear(group)
             linear += of_group
-            candidates += self._families(of_group, candidates)
+            are_all = False
+            with self.answer.budget.share(_TO_FIT):
+                candidates += [*self._families(of_group, candidates)]
+                are_all = True
             # Methods cost as much as many families of one number, which may be exact.
             is_exact = any(map(self._is_exact, candidates))
             if not is_exact and (cause := self._over_kinks(of_group, candidates)):
@@ -181,6 +186,8 @@ class Search:
             if not has_methods and (is_blind or not is_exact):
                 candidates += replays(self.answer, min(stride, _LONGEST))
             has_methods = True
+            if not (are_all or any(map(self._is_exact, candidates))):
+                raise Spent
         if is_blind:
             candidates = self._written(candidates)
         elif not is_stepped and not any(map(self._is_exact, candidates)):

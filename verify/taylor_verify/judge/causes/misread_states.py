@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import product
 from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.changed_texts import NAME, added, rewritten
+from taylor_verify.judge.causes.changed_texts import added, renamed, rewritten
 from taylor_verify.judge.causes.fit import Family, fault
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.written_numbers import Number
@@ -48,6 +49,7 @@ def _misread_states(loads: Loads) -> Iterator[tuple[str, Loads]]:
     for each, (words, factor) in product(own, _WRONG_RATES):
         rate = tuple(f"{factor}*({entry})" for entry in each.rate)
         yield f"{each.name} {words}", _with(loads, each, replace(each, rate=rate))
+    yield from (_without_lag(loads, state) for state in own)
     if loads.rotor:
         yield from _half_wheels(loads)
 
@@ -154,23 +156,34 @@ def _late(loads: Loads, state: Held) -> tuple[str, Loads]:
 
 
 def _continuous(loads: Loads, held: tuple[Held, ...]) -> tuple[str, Loads]:
-    """Return loads that read held states as continuous functions; the states stay, unread."""
-    now = {name: f"{name}_now" for each in held for name in each.components}
-
-    def renamed(text: object) -> str:
-        return NAME.sub(lambda match: now.get(match.group(), match.group()), str(text))
-
-    texts = [
-        (now[name], renamed(text))
+    """Return loads that read held states as continuous functions."""
+    texts = {
+        name: str(text)
         for each in held
         for name, text in zip(each.components, each.value, strict=True)
-    ]
-    free = tuple(state for state in loads.states if not isinstance(state, Held))
-    others = rewritten(replace(loads, states=free), renamed)
+    }
     names = " and ".join(state.name for state in held)
-    definitions = (*others.definitions, *texts)
-    changed = replace(others, definitions=definitions, states=(*others.states, *held))
-    return f"{names} continuous, where the scene samples", changed
+    return f"{names} continuous, where the scene samples", _as_functions(loads, held, texts)
+
+
+def _without_lag(loads: Loads, state: Continuous) -> tuple[str, Loads]:
+    """Return loads that read a state as the value at which its rate, linear in the state, is zero."""
+    texts = dict[str, str]()
+    for name, rate in zip(state.components, map(str, state.rate), strict=True):
+        at_0, at_1 = (renamed(rate, {name: number}) for number in ("0", "1"))
+        texts[name] = f"({at_0})/(({at_0}) - ({at_1}))"
+    return f"{state.name} without its lag", _as_functions(loads, (state,), texts)
+
+
+def _as_functions(loads: Loads, states: Sequence[State], texts: Mapping[str, str]) -> Loads:
+    """Return loads that read the components of states as texts; the states stay, unread."""
+    now = {name: f"{name}_now" for name in texts}
+    others = tuple(state for state in loads.states if state not in states)
+    changed = rewritten(replace(loads, states=others), partial(renamed, names=now))
+    own = ((now[name], renamed(text, now)) for name, text in texts.items())
+    return replace(
+        changed, definitions=(*changed.definitions, *own), states=(*changed.states, *states)
+    )
 
 
 def _half_wheels(loads: Loads) -> Iterator[tuple[str, Loads]]:

@@ -60,10 +60,14 @@ _SLIGHT: Final = 1e-3
 # Of each method the best fits beside a fault give its numbers of steps; some methods are tried.
 _FITS: Final = 4
 _METHODS: Final = 3
+# As many steps from row to row, by the size of their error alone, are perhaps one step.
+_AS_ROWS: Final = 1.5
 # Numbers of steps that are tried where the arcs without a switch are too exact to tell any.
 _COUNTS: Final = (1, 2, 4, 10)
 # This part of the work is for replays, and the rest for proofs.
 _TO_REPLAY: Final = 0.75
+# The proof of a method that is exact on the arcs may cost so much, whatever is left.
+_TO_PROVE: Final = 300_000.0
 # Of so many rows from the start.
 _FIRST: Final = 12
 # Words that programs look for.
@@ -89,22 +93,27 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     is_exact = any(steps.left < ROUNDINGS * replayed.floor for steps in of_loads)
     tried = [iter(of_loads), replayed.steps(known, _ALONE)]
     if answer.count > 2 * FEW and not is_exact:
-        # A method with memory has a first step of another kind.
-        later = answer.at(np.s_[1:])
-        beyond = _clear(later, stride)
-        late = held_loads.late_methods(acting) if acting else {}
-        more = {**late, **with_memory(answer.right)}
-        tried += [] if beyond is None else [beyond.steps(more, _ALONE)]
+        tried.append(_of_memory(answer, stride))
     every = list[Steps]()
     with answer.budget.share(_TO_REPLAY):
         for steps in chain(*tried):
             every.append(steps)
     for steps in _with_drift(answer, _each_best(every), replayed.floor):
         near = LEAVES if steps.method.run is None else _NEARLY
+        if steps.left < ROUNDINGS * replayed.floor:
+            answer.budget.at_least(_TO_PROVE)
         if steps.left < max(near, ROUNDINGS * replayed.floor):
             h = steps.step(answer)
             changes = steps.method.held.changes(answer, h) if steps.method.held else {}
             yield steps.candidate(name_of_steps(steps, answer), near, changes)
+
+
+def _of_memory(answer: Answer, stride: int) -> Iterator[Steps]:
+    """Yield the steps of methods with memory, whose first step is of another kind."""
+    replayed, acting = _clear(answer.at(np.s_[1:]), stride), answer.right.acting
+    late = held_loads.late_methods(acting) if acting else {}
+    if replayed is not None:
+        yield from replayed.steps({**late, **with_memory(answer.right)}, _ALONE)
 
 
 def _with_drift(answer: Answer, best: list[Steps], floor: float) -> Iterator[Steps]:
@@ -222,7 +231,7 @@ class _Replays:
     def steps(self, methods: Mapping[str, Method], near: float) -> Iterator[Steps]:
         """Yield each method with numbers of steps, if its error is near to the defects."""
         defects = self._compared(self.arcs.defects(self.sets))
-        for name, method in methods.items():
+        for name, method in sorted(methods.items(), key=lambda each: each[1].is_dear):
             fine = self._stepped(method, _fine(method), self.sets)
             for place, counts in self._near(method, defects, fine, near):
                 left = cache(partial(self._left, method, place))
@@ -282,8 +291,14 @@ class _Replays:
             left = float(np.linalg.norm(across(basis, smooth * defects) - part * beyond)) / whole
             if part > 0 and left < near and part * size**0.5 > _SLIGHT * whole:
                 parts.append((left, part))
-        some = [round(steps / self.stride * p ** (-1 / method.order)) for _, p in sorted(parts)]
-        return some[:_FITS]
+        fine, power = steps / self.stride, -1 / method.order
+        counts = [fine * part**power for _, part in sorted(parts)]
+        if not (counts or self.bases or method.is_dear):
+            # The error of steps as long as the rows may be far from that of finer ones.
+            size = float(np.linalg.norm(smooth * error))
+            about = fine * (whole / size) ** power if size > 0 else np.inf
+            counts = [about] if about < _AS_ROWS else []
+        return [*map(round, counts)][:_FITS]
 
     def _is_rounding(self, defects: Floats) -> bool:
         """Return True if the defects of the smooth arcs are no more than some roundings of the file."""

@@ -26,14 +26,15 @@ def become(own: Law, mass: Floats) -> None:
 def _other(s: Sample, d: Draw, size: float, count: int = 1) -> Floats:
     """Return the tensor or mass matrix with other numbers in so many places of its diagonal."""
     mass, places = s.mass.copy(), d.permutation(s.n)[:count]
-    mass[places, places] *= 1 + size / 4 * d.uniform(0.5, 1, count)
-    return np.round(mass, 5)
+    mass[places, places] = np.round(mass[places, places] * (1 + size / 4), 5)
+    return mass
 
 
 def _from_momenta(s: Sample, d: Draw, size: float) -> Rows:
     own = law(s)
     become(own, _other(s, d, size))
-    return integrated(replace(s, v0=np.linalg.solve(own.mass, s.mass @ s.v0)), own)
+    start = np.asarray(np.linalg.solve(own.mass, s.mass @ s.v0))
+    return integrated(replace(s, v0=start), own)
 
 
 def _two_entries(own: Law, s: Sample, d: Draw, size: float) -> None:

@@ -234,7 +234,7 @@ LATER_OF_LOADS: Final = (
     Kind("added mass over ground", ("moves over ground",), _over_ground("rate", "C_A"), _V),
     Kind("weight turned by R", ("turned the wrong way",), _with(hangs_back=True), _V),
     Kind("drag along space axes", ("along space axes",), _with(is_drag_in_space=True), _V),
-    Kind("lag left out", ("without its lag", "moment"), _continuous, ("lag",)),
+    Kind("lag left out", ("without its lag",), _continuous, ("lag",)),
     Kind(
         "lag of another time constant",
         ("the number ",),

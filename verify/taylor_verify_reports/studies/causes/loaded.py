@@ -208,7 +208,7 @@ class Surge:
 
     def load(self, t: float, v: Floats, q: Floats, own: Floats) -> Floats:
         """Return force and couple."""
-        return np.r_[self.thrust - self.drag * abs(v[0]) * v[0], np.zeros(5)]
+        return np.asarray((self.thrust - self.drag * abs(v[0]) * v[0]) * np.eye(6)[0])
 
 
 def any_sample(sort: str, draw: np.random.Generator) -> Sample:
