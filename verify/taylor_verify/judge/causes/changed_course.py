@@ -44,8 +44,11 @@ _ACCURATE: Final = 1e-5
 class Courses(Evidence):
     """The first wrong rows of an answer, or some of all, beside those of changed scenes from the start.
 
-    No file has all states of the scene's own, so that no arc can begin at a row.
+    No file has all states of the scene's own, so that no arc can begin at a row. Steps are so many times
+    ``finer`` than the error needs.
     """
+
+    finer: float = 1.0
 
     @classmethod
     def of(cls, answer: Answer) -> Courses:
@@ -71,7 +74,7 @@ class Courses(Evidence):
             if np.max(np.abs(motion.v - answer.truth.v) / answer.sizes) < goal:
                 break
             h /= 2
-        return h
+        return h / self.finer
 
     def motion(self, answer: Answer, changes: Changes) -> Motion | None:
         """Return the motion of a changed scene at the rows of an answer; None if it runs away."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -12,7 +13,7 @@ from taylor_verify.judge.causes.actuator_limits import own_limits
 from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.changed_course import Courses
+from taylor_verify.judge.causes.changed_course import SETTLED, Courses
 from taylor_verify.judge.causes.dynamics import Search, search_by
 from taylor_verify.judge.causes.energies import families_of_energies
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Sizes
@@ -30,6 +31,9 @@ from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers
 
 # An arc over what is wrong between two switches passes so many rows.
 _ROWS_OF_RUN: Final = 4
+# A number that leaves so little may leave no more than the error of the steps.
+_ALMOST: Final = 1e-4
+_FINER: Final = 4.0
 
 
 def in_states(answer: Answer) -> Cause | None:
@@ -44,7 +48,7 @@ def in_states(answer: Answer) -> Cause | None:
     cause = search.cause([*search.without_numbers(faults)])
     cause = cause or search.cause(steps_of_states(answer, courses))
     with suppress(Spent):
-        cause = cause or search.cause([*search.fitted(_written(answer))])
+        cause = cause or _of_numbers(answer, courses, search)
         sizes = Sizes.of(answer)
         families = [*families_of_terms(right, sizes), *families_of_bodies(answer, sizes)]
         families += families_of_energies(right)
@@ -52,6 +56,19 @@ def in_states(answer: Answer) -> Cause | None:
         cause = cause or search.cause([*search.fitted(one)])
         cause = cause or search.cause([*search.from_far([*phase_of_sampling(right)])])
     return cause
+
+
+def _of_numbers(answer: Answer, courses: Courses, search: Search) -> Cause | None:
+    """Return the number of the texts that explains the answer, if need be by finer steps."""
+    candidates = [*search.fitted(_written(answer))]
+    cause = search.cause(candidates)
+    nearest = min(candidates, key=lambda each: each.defects, default=None)
+    if cause or nearest is None or nearest.defects > _ALMOST:
+        return cause
+    answer.budget.at_least(SETTLED)
+    fine = replace(courses, finer=_FINER)
+    search = Search(answer, fine, fine.motion, answer.moving)
+    return search.cause([*search.fitted([nearest.family])])
 
 
 def in_numbers(answer: Answer, wrong: Places) -> Cause | None:

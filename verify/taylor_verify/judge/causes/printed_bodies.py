@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -18,6 +19,9 @@ from taylor_verify.words.causes import with_numbers
 # Directions in which the truth moves by less than this part tell no entry, and too few rows tell none.
 _SEEN: Final = 1e-5
 _FEWEST: Final = 18
+# A right motion has attitude and centre that are wrong by this part of v; v itself by so many times that.
+_SLIGHT: Final = 1e-4
+_OF_FRAME: Final = 10.0
 # Roundings of the file that a fit of all entries may leave, and the part by which a known body differs.
 _ROUNDINGS: Final = 1.5
 _SAME: Final = 1e-6
@@ -28,31 +32,69 @@ _FEW: Final = 6
 
 def printed_by_another_body(answer: Answer) -> Cause | None:
     """Return the body by whose mass matrix v is printed, where attitude or centre show a right motion."""
+    wrong = [answer.worst[name] for name in ("attitude", "centre") if name in answer.failed]
     has_frame = answer.file.q is not None or answer.file.c is not None
-    if (
-        answer.n != 6
-        or not has_frame
-        or not answer.moving
-        or {"attitude", "centre"} & {*answer.failed}
-    ):
+    if answer.n != 6 or not has_frame or not answer.moving:
+        return None
+    if max(wrong, default=0.0) > _SLIGHT * max(answer.worst[name] for name in answer.moving):
         return None
     truth, file = answer.truth.v / answer.sizes, answer.file.v / answer.sizes
     singular = np.linalg.svd(truth, compute_uv=False)
     if answer.count < _FEWEST or singular[-1] < _SEEN * singular[0]:
         return None
     scaled = np.linalg.lstsq(truth, file, rcond=None)[0]
-    errors = answer.errors(Motion(truth @ scaled * answer.sizes))
-    least = {name: max(_ROUNDINGS * answer.roundings[name], _ARITHMETIC) for name in answer.groups}
-    if any(np.max(errors[name]) > least[name] for name in answer.groups):
-        return None
+    own = _OF_FRAME * max(wrong, default=0.0)
+    least = {
+        name: max(_ROUNDINGS * answer.roundings[name], _ARITHMETIC, own) for name in answer.groups
+    }
+
+    def left(factors: Floats) -> dict[str, float] | None:
+        """Return what v by some factors leaves; None if it is too much."""
+        errors = answer.errors(Motion(answer.truth.v @ factors.T))
+        if any(np.max(errors[name]) > least[name] for name in answer.groups):
+            return None
+        return {each: float(np.max(errors[each])) / answer.worst[each] for each in answer.moving}
+
     factors = answer.sizes[:, None] * scaled.T / answer.sizes
-    leaves = {each: float(np.max(errors[each])) / answer.worst[each] for each in answer.moving}
+    leaves = left(factors)
+    if leaves is None:
+        return None
+    right = "the motion is nearly right" if wrong else "the motion is right"
     if words := _of_vectors(answer, factors) or _of_axes(answer.right, factors):
-        return Cause(f"the motion is right, and {words}", "convention", leaves)
+        return Cause(f"{right}, and {words}", "convention", leaves)
     noun = "impulses" if answer.right.has_momenta else "velocities"
-    name = f"the motion is right, and the {noun} are printed by the mass matrix of another body"
+    name = f"{right}, and the {noun} are printed by the mass matrix of another body"
+    for mass in _with_one_entry(answer):
+        of_body = _factors(answer.right, mass)
+        if (own_leaves := left(of_body)) is not None:
+            words = _of_body(answer.right, of_body)
+            return Cause(name, "convention", own_leaves, f"{name}: {words}")
     words = _of_body(answer.right, factors)
     return Cause(name, "convention", leaves, f"{name}: {words}") if words else None
+
+
+def _factors(right: Equations, mass: Floats) -> Floats:
+    """Return the factors of the true v in that of a file that a mass matrix prints."""
+    if right.has_momenta:
+        return np.asarray(mass @ right.inverse)
+    return np.asarray(np.linalg.solve(mass, right.mass))
+
+
+def _with_one_entry(answer: Answer) -> Iterator[Floats]:
+    """Yield the scene's mass matrix with one entry that fits the rows best, each entry in its turn."""
+    right = answer.right
+    if right.has_momenta:
+        velocities = answer.truth.v @ right.inverse
+        more = answer.file.v - answer.truth.v
+    else:
+        velocities = answer.file.v
+        more = (answer.truth.v - answer.file.v) @ right.mass
+    for i, k in zip(*np.triu_indices(len(right.mass)), strict=True):
+        one = np.zeros_like(right.mass)
+        one[i, k] = one[k, i] = 1.0
+        by_one = velocities @ one
+        number = float(np.sum(by_one * more) / np.sum(by_one * by_one))
+        yield right.mass + number * one
 
 
 def _of_vectors(answer: Answer, factors: Floats) -> str:

@@ -81,7 +81,13 @@ OF_BODIES: Final = (
         ("solid",),
     ),
     Kind("numbers in float32", ("float32", *_ENTRIES), of(_of_float32)),
-    Kind("velocities by another body", _PRINTED, _velocities, ("fluid", "solid"), has_centre=True),
+    Kind(
+        "velocities by another body",
+        (*_PRINTED, "has factors"),
+        _velocities,
+        ("fluid", "solid"),
+        has_centre=True,
+    ),
     Kind("momenta by another body", _PRINTED, _momenta(_other), _MOMENTA, has_centre=True),
     Kind(
         "couple about another point",
