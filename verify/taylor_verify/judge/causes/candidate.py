@@ -15,6 +15,8 @@ from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.words.causes import with_numbers
 
+# Bodies whose entries agree to this part are one.
+_SAME_BODY: Final = 1e-6
 # A change below this part of its natural size is none.
 _SAME: Final = 1e-10
 # A number with so many digits may have been written, if it has them to this part of it, or to so many
@@ -110,6 +112,14 @@ def _is_written(number: float, right: float, floor: float) -> bool:
         return True  # 0, for a number that is none
     unknown = min(max(_NEAR * size, _ROUNDINGS * floor * abs(number - right)), _FAR * size)
     return abs(written - number) <= unknown and written != right
+
+
+def are_same(changes: Changes, other: Changes) -> bool:
+    """Return True if two changes of numbers lead to one body under one load."""
+    is_of_numbers = changes.keys() == other.keys() and bool(changes) and "acting" not in changes
+    return is_of_numbers and all(
+        np.allclose(changes[name], other[name], rtol=_SAME_BODY, atol=0.0) for name in changes
+    )
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.actuator_limits import new_limits
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
+from taylor_verify.judge.causes.blind_motions import has_one_pace, is_on_a_line
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
 from taylor_verify.judge.causes.changed_equations import Changes
@@ -31,7 +32,6 @@ from taylor_verify.judge.causes.fit import (
 )
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.kinks import has_kinks
-from taylor_verify.judge.causes.lateness import off_pace
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import (
     families_of_bodies,
@@ -69,11 +69,6 @@ _LONGEST: Final = 8
 _FAR: Final = 0.01
 # A fit that leaves less is no fit of these arcs alone.
 _ALONE: Final = 1e-4
-# Velocities that change along one direction leave this part in any other one.
-_ON_A_LINE: Final = 1e-9
-# A motion has one pace if a method changes it otherwise by less than this part, or so many roundings.
-_OFF_PACE: Final = 1e-4
-_OFF_ROUNDINGS: Final = 30.0
 # Fits that end so near to each other, as a part of the scale, are one.
 _APART: Final = 0.01
 
@@ -182,12 +177,12 @@ class Search:
             is_exact = any(map(self._is_exact, candidates))
             if not is_exact and (cause := self._over_kinks(of_group, candidates)):
                 return cause
-            is_blind = self._is_on_a_line or any(map(self._is_pace, candidates))
+            is_blind = is_on_a_line(self.answer) or any(map(self._is_pace, candidates))
             if not has_methods and (is_blind or not is_exact):
                 candidates += replays(self.answer, min(stride, _LONGEST))
             has_methods = True
             if not (are_all or any(map(self._is_exact, candidates))):
-                raise Spent
+                return self.cause([each for each in candidates if not each.count])
         if is_blind:
             candidates = self._written(candidates)
         elif not is_stepped and not any(map(self._is_exact, candidates)):
@@ -257,20 +252,8 @@ class Search:
 
         Such a motion, as a decay, does not tell the error of a method from a number that sets the pace.
         """
-        return candidate.kind == "clock" and self._is_exact(candidate) and self._has_one_pace
-
-    @cached_property
-    def _is_on_a_line(self) -> bool:
-        """True if the velocities change along one direction: any number, or two, explain such a motion."""
-        v = self.answer.truth.v / self.answer.sizes
-        singular = np.linalg.svd(v - v[0], compute_uv=False)
-        return bool(singular[1] <= _ON_A_LINE * singular[0])
-
-    @cached_property
-    def _has_one_pace(self) -> bool:
-        """True if the motion is such that a method of order two changes its pace alone."""
-        few = self.answer.thinned(FIT_ROWS)
-        return off_pace(few) < max(_OFF_PACE, _OFF_ROUNDINGS * self.floor)
+        is_clock = candidate.kind == "clock" and self._is_exact(candidate)
+        return is_clock and has_one_pace(self.answer.thinned(FIT_ROWS), self.floor)
 
     def _telling(self, pairs: list[Candidate], is_blind: bool) -> list[Candidate]:
         """Return the pairs that a method does not imitate: it changes the pace, and damps, at once."""
@@ -315,12 +298,18 @@ class Search:
         return self._families(self._linear(families), ())
 
     def from_far(self, families: Iterable[tuple[Family, Floats]]) -> Iterator[Candidate]:
-        """Yield families of one number, fitted from the best of some far numbers."""
+        """Yield families of one number, fitted from the best of some far numbers.
+
+        After one that is exact, others are tried that may be so as well.
+        """
+        has_exact = False
         for family, begins in families:
             tried = [number for number in begins if self._has_motion(family, number)]
             sizes = np.linalg.norm(
                 self.evidence.coarse([family.changes(np.array([x])) for x in tried]), axis=(1, 2)
             )
+            if has_exact and min(sizes) > _LINEAR * self.evidence.size:
+                continue
             ends = list[Floats]()
             for k in np.argsort(sizes)[:_BEGINS]:
                 with suppress(ValueError):
@@ -331,6 +320,7 @@ class Search:
                         candidate = replace(self._candidate(family, fit), near=_FAR)
                         yield candidate
                         if candidate.defects < _ALONE or self._is_exact(candidate):
+                            has_exact = True
                             break
 
     def _has_motion(self, family: Family, number: float) -> bool:

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.arcs import moved
-from taylor_verify.judge.causes.float_answer import Answer, velocities_of
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
 
 # Steps from a row to the next.
@@ -22,8 +22,6 @@ _FITS: Final = 0.7
 _RIGHT: Final = 1e-3
 _MOST_ROWS: Final = 6.0
 _WHOLE: Final = 1e-4
-# A part of the time in which a motion changes by its own size.
-_BRIEF: Final = 0.03
 
 
 def true_states(answer: Answer, count: int) -> Floats:
@@ -42,30 +40,6 @@ def at_other_times(answer: Answer, states: Floats, late: Floats) -> Floats:
     spans = when - times[near]
     steps = max(1, ceil(_STEPS * float(np.max(np.abs(spans))) / answer.spacing))
     return moved(own, answer.right, states[:, :, near], times[near], spans, steps)
-
-
-def off_pace(answer: Answer) -> float:
-    """Return the part of the second derivative of the true motion's rates that is not along the rates.
-
-    A method of order two changes the rates by such derivatives. Where they are along the rates, as in a
-    decay or a steady precession, it changes the pace alone, as another clock would.
-    """
-    nu, z = velocities_of(answer.right, answer.truth.v), true_states(answer, answer.n)
-
-    def rates(late: float) -> Floats:
-        shifts = np.full(answer.count, late)
-        states = at_other_times(answer, z, shifts) if late else z
-        every = answer.right.rates(answer.times + shifts, states)[0, : answer.n]
-        return np.asarray(every / answer.sizes[:, None])
-
-    now, span = rates(0.0), float(np.ptp(answer.times)) or 1.0
-    turning = float(np.max(np.linalg.norm(nu[:, -3:], axis=1)))
-    step = _BRIEF / max(turning, float(np.max(np.abs(now))), 1 / span)
-    before, after = rates(-step), rates(step)
-    bend = before - 2 * now + after
-    along = np.sum(bend * now, axis=0) / np.maximum(np.sum(now**2, axis=0), 1e-300)
-    size = float(np.linalg.norm(bend))
-    return float(np.linalg.norm(bend - along * now)) / size if size > 0 else 0.0
 
 
 def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:

@@ -296,7 +296,8 @@ class _Replays:
         if not (counts or self.bases or method.is_dear):
             # The error of steps as long as the rows may be far from that of finer ones.
             size = float(np.linalg.norm(smooth * error))
-            about = fine * (whole / size) ** power if size > 0 else np.inf
+            part = whole / size if size > 0 else 0.0
+            about = fine * part**power if part > 0 else np.inf
             counts = [about] if about < _AS_ROWS else []
         return [*map(round, counts)][:_FITS]
 

@@ -11,8 +11,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.budget import Spent
-from taylor_verify.judge.causes.candidate import Candidate, Cause
-from taylor_verify.judge.causes.changed_equations import Changes
+from taylor_verify.judge.causes.candidate import Candidate, Cause, are_same
 from taylor_verify.judge.causes.fit import least_rest
 from taylor_verify.judge.causes.fitted_bodies import described
 from taylor_verify.judge.causes.float_answer import Answer, Motion
@@ -40,7 +39,8 @@ NOTHING: Final = 1e-9
 FAIR: Final = 1e-6
 _FAIR_PAIR: Final = 1e-8
 _SHORT: Final = 2
-# Numbers that leave more are short by chance.
+# Short numbers leave no more than those that fit best, but for the error of the search, and not by chance.
+_AS_LITTLE: Final = 1.01
 _OF_SHORT: Final = 1e-4
 _DRAGS: Final = {"linear drag", "quadratic drag", "drag by the speed", "damping"}
 # Defects that noise may make, and how many candidates are tried that leave no more.
@@ -59,8 +59,6 @@ _PROVEN: Final = 6
 FEW: Final = 3
 _DIGITS: Final = (2, 3, 4, 6, 17)
 _DIGITS_OF_MANY: Final = (3, 5)
-# Bodies whose entries agree to this part are one.
-_SAME_BODY: Final = 1e-6
 # A number so small beside the scale of its family is none, if the motion is as near without it.
 _NO_NUMBER: Final = (1e-3, 1e-8)
 
@@ -184,8 +182,8 @@ class Choice:
             most /= candidate.method.count
         most = max(most * _OF_EACH_NUMBER ** max(0, count - 1), NOTHING)
         can_be_better = count > 0 and self._polished < _POLISHED
-        # One number costs no more to fit once more than to be tried with fewer digits.
-        tries_short = count > 1 or not can_be_better
+        # One number costs no more to fit once more than to be tried with fewer digits, unless it has them.
+        tries_short = count > 1 or not can_be_better or self._is_short(candidate)
         if proof.worst <= min(PAIR, most) and self._is_evident(proof, tries_short):
             return proof
         if can_be_better:
@@ -217,9 +215,16 @@ class Choice:
         if not tries_short or proven.worst > _OF_SHORT:
             return False
         differences = family.right + _short(candidate.numbers - family.right)
-        enough, both = max(proven.worst, self._least), (_short(candidate.numbers), differences)
+        enough, both = (
+            max(_AS_LITTLE * proven.worst, self._least),
+            (_short(candidate.numbers), differences),
+        )
         some = (self._left(replace(candidate, numbers=numbers)) for numbers in both)
         return any(short is not None and short.worst <= enough for short in some)
+
+    def _is_short(self, candidate: Candidate) -> bool:
+        change = candidate.numbers - candidate.family.right
+        return bool(np.all(np.abs(change - _short(change)) <= _OF_SHORT * np.abs(change)))
 
     def _leaves_rounding(self, proven: _Proven, groups: Sequence[str]) -> bool:
         """Return True if what is left of groups is no more than the file, and the search, round off."""
@@ -320,7 +325,7 @@ class Choice:
         others = dict.fromkeys(
             described(self.answer, each.candidate)[0]
             for each in alike[1:]
-            if not _are_same(each.candidate.changes, first.candidate.changes)
+            if not are_same(each.candidate.changes, first.candidate.changes)
         )
         others.pop(text, None)
         return Cause(
@@ -389,11 +394,3 @@ class Choice:
 
 def _short(numbers: Floats) -> Floats:
     return np.array([float(f"{x:.{_SHORT}g}") for x in numbers])
-
-
-def _are_same(changes: Changes, other: Changes) -> bool:
-    """Return True if two changes of numbers lead to one body under one load."""
-    is_of_numbers = changes.keys() == other.keys() and bool(changes) and "acting" not in changes
-    return is_of_numbers and all(
-        np.allclose(changes[name], other[name], rtol=_SAME_BODY, atol=0.0) for name in changes
-    )
