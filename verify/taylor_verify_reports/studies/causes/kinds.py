@@ -13,14 +13,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
-from taylor_verify_reports.studies.causes.kind import (
-    FLUID,
-    WITH_RATES,
-    Kind,
-    of,
-    right,
-    setting,
-)
+from taylor_verify_reports.studies.causes.kind import FLUID, WITH_RATES, Kind, of, right, setting
 from taylor_verify_reports.studies.causes.kinds_of_bodies import OF_BODIES, become
 from taylor_verify_reports.studies.causes.kinds_of_loads import LATER_OF_LOADS, OF_LOADS
 from taylor_verify_reports.studies.causes.kinds_of_rows import (

@@ -186,7 +186,7 @@ class Lag:
 
     @property
     def acting(self) -> Acting:
-        """The same in numbers."""
+        """The moment and its rate as plain code."""
         return Acting(
             lambda t, v, q, own: own,
             np.zeros(3),
