@@ -191,6 +191,31 @@ THIRDS = (
 CONTINUOUSLY = HELD.replace(STATES, "").replace('["m1", "m2", "m3"]', LIMITED)
 
 
+RATES = ", ".join(f'"(-kp*w{i} - a{i})/0.3"' for i in (1, 2, 3))
+LAG = f"[states]\na = {{ start = [0, 0, 0], rate = [{RATES}] }}\n"
+MOTOR = BODY.replace(CONTINUOUS, LAG).replace("0.7", "6")
+PROMPT = MOTOR.replace(LAG, "").replace('"a1", "a2", "a3"', '"-kp*w1", "-kp*w2", "-kp*w3"')
+
+
+@pytest.mark.parametrize(
+    ("changed", "name"),
+    by_turns(
+        [
+            (PROMPT, "a without its lag"),
+            (MOTOR.replace("/0.3", "/0.318"), "the number 0.3 in all texts"),
+            (PROMPT.replace('"-kp*w3"', '"-1.1*kp*w3"'), None),
+        ],
+        3,
+    ),
+    ids=["no lag", "longer", "no lag and more"],
+)
+def test_a_lag_that_is_left_out_or_longer_is_named(changed: str, name: str | None) -> None:
+    """Without a lag the moment makes its rate zero; another time constant is fitted by fine steps."""
+    assert names(changed, MOTOR) == ([] if name is None else [name])
+    if name == "a without its lag":
+        assert as_printed(changed, MOTOR)[1] <= 1e-8
+
+
 @pytest.mark.parametrize(
     "changed",
     [
