@@ -75,7 +75,7 @@ def concluded(
     ``status`` is that of the results. ``text`` is called with the status that follows from the rows. If the
     baseline alone decides, it is called with None, and a last line says so.
     """
-    content, messages = dict(document), list[str]()
+    content, messages, nothing = dict(document), list[str](), list[str]()
     comparison, decision = None, ""
     if asked.baseline is not None:
         source = asked.baseline.source
@@ -83,7 +83,8 @@ def concluded(
         content["baseline"] = complete(comparison.document())
         messages += _messages(source, comparison)
         if not comparison.compared:
-            messages.append(_nothing_shared(asked.baseline.verdicts, results.verdicts))
+            nothing = [_nothing_shared(asked.baseline.verdicts, results.verdicts)]
+            messages += nothing
         elif others := sorted(
             {v.scene for v in asked.baseline.verdicts} - {v.scene for v in results.verdicts}
         ):
@@ -103,7 +104,7 @@ def concluded(
             status = WRONG_CALL
     last = f"\n{decision}" if decision else ""
     stated = None if decision else status
-    failing = [*_failing(results, comparison)]
+    failing = [*nothing, *_failing(results, comparison)]
     return Answer(status, with_sum(content), lambda: f"{text(stated)}{last}", messages, failing)
 
 

@@ -21,7 +21,7 @@ from taylor_verify.cli.streams import say
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.status import Status
-from taylor_verify.records.sweep import Spread, SweepSummary
+from taylor_verify.records.sweep import Spread, SweepSummary, WorstCase
 from taylor_verify.words.account import cause_line
 
 _HEADINGS: Final = (
@@ -80,9 +80,10 @@ def answer(options: argparse.Namespace) -> Answer:
     if folder is not None:
         messages.append(f"wrote {folder}, with {len(summary.worst)} of the worst cases as scenes")
     failing = [
-        f"{case.verdict}  {case.scene} {case.quantity}: {case.because}"
+        line
         for case in summary.worst
         if case.verdict in (Status.FAIL, Status.UNDECIDED)
+        for line in (f"{case.verdict}  {_worst(case)}", *map(cause_line, case.causes))
     ]
     return Answer(
         summary.exit_status, complete(summary), partial(_text, summary), messages, failing
@@ -104,15 +105,18 @@ def _text(summary: SweepSummary) -> str:
     if summary.worst:
         page.line(bold("the worst cases"), ", each with the numbers that `run` finds for its scene")
     for case in summary.worst[:_SHOWN]:
-        # The arithmetic of a bound is long; `run --explain` on the scene shows it.
-        size = case.because if case.ratio is None else figure(case.ratio)
-        words = f"  {case.scene}  {case.quantity} {size}"
-        page.line(status_text(case.verdict.value), f"{words}  {case.file}".rstrip())
+        page.line(status_text(case.verdict.value), f"  {_worst(case)}  {case.file}".rstrip())
         for cause in case.causes:
             page.line(cause_line(cause))
     page.line()
     print_end(page, [], f"bodies: {summary.counts}", summary.exit_status, explained=True)
     return page.text()
+
+
+def _worst(case: WorstCase) -> str:
+    # The arithmetic of a bound is long; `run --explain` on the scene shows it.
+    size = case.because if case.ratio is None else figure(case.ratio)
+    return f"{case.scene}  {case.quantity} {size}"
 
 
 def _cells(spread: Spread) -> list[str]:

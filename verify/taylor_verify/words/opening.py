@@ -21,14 +21,21 @@ def opening(verdicts: Sequence[Verdict], causes: Sequence[LikelyCause] = ()) -> 
     """
     if not verdicts:
         return "nothing was judged"
-    status = gravest(verdict.verdict for verdict in verdicts)
+    # What this machine has no numbers for hides no verdict on the rest.
+    known = [v for v in verdicts if v.verdict is not Status.UNAVAILABLE] or [*verdicts]
+    status = gravest(verdict.verdict for verdict in known)
     names = " and ".join(dict.fromkeys(map(_title, causes)))
     cause = f", likely cause: {names}" if names else ""
     where = "nearest to its bound" if status is Status.PASS else "worst"
-    row = worst(verdicts)
+    row, unknown = worst(known), len(verdicts) - len(known)
+    but = (
+        f", {unknown} row{'s' * (unknown > 1)} unavailable"
+        if unknown and status is Status.PASS
+        else ""
+    )
     is_one_run = len({(verdict.scene, verdict.rung) for verdict in verdicts}) == 1
     place = "" if is_one_run else f"{row.scene} {row.rung} "
-    return f"{status.value}{cause}; {where}: {place}{row.sentence}"
+    return f"{status.value}{cause}{but}; {where}: {place}{row.sentence}"
 
 
 def _title(cause: LikelyCause) -> str:

@@ -84,8 +84,8 @@ def is_ours(name: str) -> bool:
 
 def _near_ours(name: str) -> str:
     close = difflib.get_close_matches(name, (*KNOWN, *GROUPS), n=1)
-    groups = [group for group in GROUPS if group not in SEQUENCES[1:]]
-    return near(name, close or groups)
+    groups = [group for group in GROUPS if group not in SEQUENCES]
+    return near(name, close or [*groups, f"{SEQUENCES[0]} to {SEQUENCES[-1]}"])
 
 
 def _group(name: str) -> tuple[str, Unit | None]:

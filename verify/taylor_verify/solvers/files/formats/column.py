@@ -5,6 +5,7 @@ Every format holds a file to these limits before it makes anything of its conten
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final, NamedTuple
@@ -91,4 +92,6 @@ def listed(texts: Sequence[str], most: int = MOST_LISTED, between: str = ", ") -
 
 def shown(value: object) -> str:
     """Return a value as its file writes it, cut short where it is long."""
-    return cut(repr(value) if isinstance(value, str) or value is None else str(value))
+    if value is None or isinstance(value, bool):
+        return json.dumps(value)
+    return cut(repr(value) if isinstance(value, str) else str(value))

@@ -31,6 +31,9 @@ def opened(file: Content, path: Path, tabulate: Callable[[Any], Table]) -> Table
     """Return the table that is made of the open file; whatever is broken in it is refused."""
     import h5py
 
+    if file.beginning(3) == b"CDF":
+        mend = "write NetCDF 4, as `nccopy -k nc4 OLD NEW` does"
+        raise refusal("NetCDF 4, which is HDF5", "the classic form of NetCDF", path, mend)
     with unbroken("an HDF5 file", path), h5py.File(file.binary, "r") as content:
         return tabulate(content)
 
