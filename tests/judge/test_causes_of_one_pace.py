@@ -14,7 +14,8 @@ from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from builders.turns import by_turns
 from scipy.spatial.transform import Rotation
 
-from taylor_verify import check
+from taylor_verify import check, run
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import read
 
 DRAG = ["-0.1*w1", "-0.1*w2", "0.08 - 0.1*w3"]
@@ -171,3 +172,12 @@ def test_on_a_line_a_number_is_said_if_it_was_written(
     ).causes
     titles = [cause.sentence for cause in causes]
     assert [title[: len(words or "")] for title in titles] == ([words] if words else [])
+
+
+def test_one_row_that_is_repeated_tells_no_more_numbers_than_it_has() -> None:
+    """A body and a load, six numbers, would explain three: nothing is proven by that."""
+    judged = run(
+        "euler/nesc-brick", solver=lambda problem: {"omega": [[0.3, 1, 0.2]] * len(problem.times)}
+    )
+    assert judged["omega"].verdict is Status.FAIL
+    assert not judged.causes

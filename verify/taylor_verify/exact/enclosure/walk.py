@@ -134,7 +134,8 @@ class Walk:
         if system.instants is None:
             return []
         if self._last < 0:
-            raise Unreached("held states run forward in time", self._pending[-1])
+            because = f"held states run forward in time, from t = {float(origin):g} on"
+            raise Unreached(because, self._pending[-1])
         try:
             instants = system.instants(origin + self._last)
         except ValueError as fault:

@@ -126,7 +126,9 @@ class Choice:
 
         Noise in the rows is more of an arc from row to row than of the motion over all rows.
         """
-        near = [*filter(self._is_near, candidates)]
+        # Equal rows count once, and as many numbers as there are in the others explain whatever they are.
+        known = np.unique(self.answer.file.v, axis=0).size
+        near = [each for each in candidates if self._is_near(each) and each.count < known]
         some = [c for c in candidates if c.count <= 1 and c.defects < _NOISY and not c.is_nothing]
         return near or sorted(some, key=lambda each: each.defects)[:_TRIED]
 
