@@ -59,6 +59,8 @@ _LINEAR: Final = 0.6
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
+# One number whose linear fit is nearly exact may cost so much, whatever is left.
+_FOR_ONE: Final = 1_500_000.0
 # Families of which not all are fitted by a part of the work are left to methods, which have no number.
 _TO_FIT: Final = 2 / 3
 # Of the numbers that a fit may begin at, so many are tried: the best one may fit these arcs alone.
@@ -373,6 +375,8 @@ class Search:
                 continue
             if family.count > 1 and counts and family.count > max(1, min(counts)):
                 continue
+            if family.count == 1 and each.left < _NEARLY:
+                self.answer.budget.at_least(_FOR_ONE)
             # A step may lead to a number that no scene has.
             with suppress(ValueError):
                 fit = gauss_newton(self.evidence, family)

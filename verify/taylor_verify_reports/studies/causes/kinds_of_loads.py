@@ -19,20 +19,17 @@ from taylor_verify_reports.studies.causes.simulated import (
     integrated,
     law,
     rotation,
+    skew,
 )
 from taylor_verify_reports.studies.causes.stepping import Draw, Make
 
 _LOWER: Final = ((4, 0), (4, 2), (5, 0), (5, 1))
 
 
-def _crossing(p: Floats) -> Floats:
-    return np.array([[0, -p[2], p[1]], [p[2], 0, -p[0]], [-p[1], p[0], 0]])
-
-
 def _added_coriolis(s: Sample, v: Floats) -> Floats:
     """Return C_A(v) of Fossen (Handbook of Marine Craft Hydrodynamics, 2nd ed., 6.3.1)."""
     p, turning = np.split((s.mass - s.dry) @ v, 2)
-    return np.block([[np.zeros((3, 3)), -_crossing(p)], [-_crossing(p), -_crossing(turning)]])
+    return np.block([[np.zeros((3, 3)), -skew(p)], [-skew(p), -skew(turning)]])
 
 
 def _entries(places: Callable[[Draw], Any], factor: float) -> Make:
@@ -52,19 +49,20 @@ def _any_entry(d: Draw) -> Any:
     return [(i, block + (i % 3 + 1 + k) % 3)]
 
 
-def _of_added(factor: float) -> Make:
+def of_added(factor: float, *, in_inertia: bool = False) -> Make:
+    """Return the maker of motions whose added mass has a factor in the Coriolis terms, or everywhere."""
+
     def change(own: Law, s: Sample, d: Draw, size: float) -> None:
         own.coriolis = s.dry + factor * (s.mass - s.dry)
         own.munk = own.coriolis[:3].copy()
+        if in_inertia:
+            own.mass = own.coriolis.copy()
 
     return of(change)
 
 
-def _no_added(own: Law, s: Sample, d: Draw, size: float) -> None:
-    own.mass, own.coriolis, own.munk = s.dry, s.dry.copy(), s.dry[:3].copy()
-
-
-def _centre_in_one(own: Law, s: Sample, d: Draw, size: float) -> None:
+def centre_in_one(own: Law, s: Sample, d: Draw, size: float) -> None:
+    """Leave the coupling by the centre of mass out of the Coriolis terms."""
     matrix = s.mass.copy()
     matrix[:3, 3:] = matrix[3:, :3] = 0
     own.coriolis, own.munk = matrix, matrix[:3].copy()
@@ -137,17 +135,17 @@ OF_LOADS: Final = (
     Kind(
         "added mass missing in C",
         ("lack the added mass", "added mass left out in"),
-        _of_added(0),
+        of_added(0),
         ("solid",),
     ),
-    Kind("added mass twice in C", ("added mass twice",), _of_added(2), ("solid",)),
+    Kind("added mass twice in C", ("added mass twice",), of_added(2), ("solid",)),
     Kind(
         "added mass of the other sign in C",
         ("added mass with the other",),
-        _of_added(-1),
+        of_added(-1),
         ("solid",),
     ),
-    Kind("added mass missing", ("added mass left out",), of(_no_added), ("solid",)),
+    Kind("added mass missing", ("added mass left out",), of_added(0, in_inertia=True), ("solid",)),
     Kind("entry of C_A zeroed", ("C_",), _entries(_any_entry, 0.0), ("solid",)),
     Kind("entry of C_A of the other sign", ("C_",), _entries(_any_entry, -1.0), ("solid",)),
     Kind(
@@ -159,7 +157,7 @@ OF_LOADS: Final = (
     Kind(
         "centre of mass in M alone",
         ("centre of mass", "coupling left out in", "m r_"),
-        of(_centre_in_one),
+        of(centre_in_one),
         ("solid",),
     ),
     Kind("drag of another size", _DRAG, _with(drag=_half_drag), _V),
@@ -227,6 +225,25 @@ OF_LOADS: Final = (
         _S,
     ),
 )
+
+
+def without_lag(s: Sample, d: Draw, size: float) -> Rows:
+    """Return motors that follow at once: their states are those at which their rates are zero."""
+    own, rate, load, none = law(s), s.acting.rate, s.acting.load, 0 * s.acting.start
+    pace = float(-(rate(0.0, s.v0, s.q0, none + 1) - rate(0.0, s.v0, s.q0, none))[0])
+    own.acting = replace(
+        s.acting, load=lambda t, v, q, m: load(t, v, q, rate(t, v, q, none) / pace)
+    )
+    return integrated(s, own)
+
+
+def slower_motor(s: Sample, d: Draw, size: float) -> Rows:
+    """Return motors whose states follow in a longer time."""
+    own, rate = law(s), s.acting.rate
+    own.acting = replace(s.acting, rate=lambda t, v, q, m: rate(t, v, q, m) / (1 + size))
+    return integrated(s, own)
+
+
 # Kinds that came later stand last of all.
 LATER_OF_LOADS: Final = (
     Kind("rate of the current left out", ("rate of the current",), _over_ground("rate"), _V),
@@ -234,11 +251,11 @@ LATER_OF_LOADS: Final = (
     Kind("added mass over ground", ("moves over ground",), _over_ground("rate", "C_A"), _V),
     Kind("weight turned by R", ("turned the wrong way",), _with(hangs_back=True), _V),
     Kind("drag along space axes", ("along space axes",), _with(is_drag_in_space=True), _V),
-    Kind("lag left out", ("without its lag",), _continuous, ("lag",)),
+    Kind("lag left out", ("without its lag",), without_lag, ("lag",)),
     Kind(
         "lag of another time constant",
         ("the number ",),
-        _with(constant=lambda a, s, e: (1 + e) * a.constant),
+        slower_motor,
         ("lag",),
     ),
     Kind("drag of another size in surge", _SURGE, _with(drag=lambda a, s, e: 1.5 * a.drag), _U),

@@ -9,8 +9,10 @@ from typing import Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import SORTS, Acting, Floats, Sample, sample
-from taylor_verify_reports.studies.causes.simulated import cross, rotation
+from taylor_verify_reports.studies.causes.simulated import cross, rotation, skew
 
+# A multiple of this is a double, and a short decimal text.
+GRID: Final = 64
 LOADED: Final = ("solid", "vehicle", "gradient", "pulse", "sampled", "lag", "surge")
 
 
@@ -167,34 +169,6 @@ class Controller:
 
 
 @dataclass(frozen=True)
-class Lag:
-    """A moment that follows -k omega with a time constant."""
-
-    gain: float
-    constant: float
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """Lines of [body]."""
-        return ('moment = ["a1", "a2", "a3"]',)
-
-    @property
-    def tables(self) -> tuple[str, ...]:
-        """Lines behind [time]."""
-        rates = ", ".join(f'"(-{self.gain!r}*w{i} - a{i})/{self.constant!r}"' for i in (1, 2, 3))
-        return ("[states]", f"a = {{ start = [0, 0, 0], rate = [{rates}] }}")
-
-    @property
-    def acting(self) -> Acting:
-        """The moment and its rate as plain code."""
-        return Acting(
-            lambda t, v, q, own: own,
-            np.zeros(3),
-            rate=lambda t, v, q, own: (-self.gain * v - own) / self.constant,
-        )
-
-
-@dataclass(frozen=True)
 class Surge:
     """A thrust and a quadratic drag along axis 1."""
 
@@ -209,6 +183,34 @@ class Surge:
     def load(self, t: float, v: Floats, q: Floats, own: Floats) -> Floats:
         """Return force and couple."""
         return np.asarray((self.thrust - self.drag * abs(v[0]) * v[0]) * np.eye(6)[0])
+
+
+def on_grid(values: Floats) -> Floats:
+    """Return the nearest multiples of 1/64."""
+    return np.asarray(np.round(np.asarray(values) * GRID) / GRID)
+
+
+def numbers(draw: np.random.Generator, low: float, high: float, count: int = 3) -> Floats:
+    """Draw multiples of 1/64."""
+    return on_grid(draw.uniform(low, high, count))
+
+
+def texts(lines: list[str]) -> str:
+    """Return texts as a scene has them."""
+    return "[" + ", ".join(f'"{line}"' for line in lines) + "]"
+
+
+def lagging(body: Sample, draw: np.random.Generator) -> Sample:
+    """An own state: the moment follows what a controller asks for with a lag."""
+    kp, kd, pace = (float(x) for x in numbers(draw, 0.3, 0.9, 3))
+    lines = [f"{pace}*(-{kp}*q{i} - {kd}*w{i} - m{i})" for i in (1, 2, 3)]
+    tables = ("[states]", f"m = {{ start = [0, 0, 0], rate = {texts(lines)} }}")
+    acting = Acting(
+        load=lambda t, v, q, own: own,
+        start=np.zeros(3),
+        rate=lambda t, v, q, own: pace * (-kp * q[1:] - kd * v - own),
+    )
+    return replace(body, lines=('moment = ["m1", "m2", "m3"]',), tables=tables, acting=acting)
 
 
 def any_sample(sort: str, draw: np.random.Generator) -> Sample:
@@ -227,22 +229,22 @@ def held(load: Callable[[float, Floats, Floats, Floats], Floats], s: Sample) -> 
     )
 
 
+def solid_of(body: Sample, mass: float, inertia: Floats, centre: Floats, added: Floats) -> Sample:
+    """Return a rigid body of principal moments about its centre of mass, with an added mass."""
+    lever = skew(centre)
+    tensor = np.diag(inertia) - mass * lever @ lever
+    dry = np.block([[mass * np.eye(3), -mass * lever], [mass * lever, tensor]])
+    keys = {"mass": mass, "inertia": inertia, "centre_of_mass": centre, "added_mass": added}
+    return replace(body, mass=dry + np.diag(added), solid=keys, dry=dry)
+
+
 def _solid(draw: np.random.Generator) -> Sample:
     s = sample("fluid", draw)
     heavy = float(np.round(draw.uniform(0.8, 1.5), 4))
     r = np.round(0.05 * draw.uniform(-1, 1, 3), 4)
     inertia = np.round(draw.uniform(0.2, 0.9, 3), 4)
     added = np.round(draw.uniform(0.1, 1.2, 6) * np.r_[1, 1, 1, 0.3, 0.3, 0.3], 4)
-    turn = heavy * np.cross(np.eye(3), r)
-    tensor = np.diag(inertia) + heavy * (r @ r * np.eye(3) - np.outer(r, r))
-    dry = np.block([[heavy * np.eye(3), turn.T], [turn, tensor]])
-    keys = {
-        "mass": heavy,
-        "inertia": inertia,
-        "centre_of_mass": r,
-        "added_mass": added,
-    }
-    return replace(s, sort="solid", mass=dry + np.diag(added), solid=keys, dry=dry)
+    return replace(solid_of(s, heavy, inertia, r, added), sort="solid")
 
 
 def _vehicle(draw: np.random.Generator) -> Sample:
@@ -299,17 +301,7 @@ def _sampled(draw: np.random.Generator) -> Sample:
 
 def _lag(draw: np.random.Generator) -> Sample:
     s = sample("free", draw)
-    gain, constant = np.round(draw.uniform(0.2, 0.8, 2), 3).tolist()
-    of = Lag(gain, constant)
-    return replace(
-        s,
-        sort="lag",
-        lines=of.lines,
-        tables=of.tables,
-        acting=of.acting,
-        source=of,
-        times=s.times[:40],
-    )
+    return replace(lagging(s, draw), sort="lag", times=s.times[:40])
 
 
 def _surge(draw: np.random.Generator) -> Sample:

@@ -75,6 +75,11 @@ def cross(a: Floats, b: Floats) -> Floats:
     return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
 
 
+def skew(a: Floats) -> Floats:
+    """Return the matrix of a x."""
+    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
+
+
 def rates(law: Law, t: float, v: Floats, q: Floats, own: Floats) -> Floats:
     """Return v' of omega or of U and Omega; ``own`` are the states of the scene's own."""
     n, w = len(v), v[-3:]

@@ -9,50 +9,22 @@ from typing import Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Acting, Floats, Sample
-from taylor_verify_reports.studies.causes.kind import Kind
-from taylor_verify_reports.studies.causes.simulated import Law, Rows, integrated, law, rotation
-from taylor_verify_reports.studies.causes.stepping import Make
-from taylor_verify_reports.studies.vectors.bodies_under_loads import (
-    Draw,
-    Loaded,
-    numbers,
-    texts,
+from taylor_verify_reports.studies.causes.kind import Kind, of
+from taylor_verify_reports.studies.causes.kinds_of_loads import (
+    centre_in_one,
+    of_added,
+    slower_motor,
     without_lag,
 )
+from taylor_verify_reports.studies.causes.loaded import numbers, solid_of, texts
+from taylor_verify_reports.studies.causes.simulated import Rows, integrated, law, rotation
+from taylor_verify_reports.studies.causes.stepping import Make
+from taylor_verify_reports.studies.vectors.bodies_under_loads import Draw, Loaded
 
 _PLAIN: Final = ("vehicle", "current")
 _SOLIDS: Final = (*_PLAIN, "steered")
 _MASS: Final = ("added mass", "M_", "mass")
 _CORIOLIS: Final = ("added mass", "Coriolis", "C_", "M_")
-
-
-def _of(change: Callable[[Law, Sample, float], None]) -> Make:
-    """Return the maker of answers by a changed law."""
-
-    def make(s: Sample, d: Draw, size: float) -> Rows:
-        own = law(s)
-        change(own, s, size)
-        return integrated(s, own)
-
-    return make
-
-
-def _masses(factor: float, in_inertia: bool) -> Make:
-    """Return the maker of answers whose added mass has a factor in the Coriolis terms, or everywhere."""
-
-    def change(own: Law, s: Sample, size: float) -> None:
-        mass = s.dry + factor * (s.mass - s.dry)
-        own.coriolis, own.munk = mass, mass[:3].copy()
-        if in_inertia:
-            own.mass = mass
-
-    return _of(change)
-
-
-def _no_coupling(own: Law, s: Sample, size: float) -> None:
-    """Change the momenta alone, as a simulator does whose C is that of a body about its centre."""
-    own.coriolis = s.mass * np.kron(np.eye(2), np.ones((3, 3)))
-    own.munk = own.coriolis[:3].copy()
 
 
 def _scaled(part: Callable[[Floats, Floats], Floats], factor: float) -> Make:
@@ -105,12 +77,6 @@ def _drag_over_ground(s: Sample, d: Draw, size: float) -> Rows:
     return integrated(s, own)
 
 
-def _slower_motor(s: Sample, d: Draw, size: float) -> Rows:
-    own, rate = law(s), s.acting.rate
-    own.acting = replace(s.acting, rate=lambda t, v, q, m: rate(t, v, q, m) / (1 + size))
-    return integrated(s, own)
-
-
 def _of_energy(change: Callable[[Floats, float], Floats]) -> Make:
     """Return the maker of answers by another energy of the impulses."""
 
@@ -133,12 +99,12 @@ _PUSH: Final = ("force", "load", "thrust")
 _MOMENT: Final = ("weight", "moment", "load", "couple")
 _DRAG: Final = ("drag", "load", "force", "factor")
 WATER_KINDS: Final = (
-    Kind("added mass left out", _MASS, _masses(0.0, in_inertia=True), _PLAIN),
-    Kind("added mass twice", _MASS, _masses(2.0, in_inertia=True), _PLAIN),
-    Kind("C_A left out", _CORIOLIS, _masses(0.0, in_inertia=False), _SOLIDS),
-    Kind("C_A twice", _CORIOLIS, _masses(2.0, in_inertia=False), _SOLIDS),
-    Kind("C_A with the other sign", _CORIOLIS, _masses(-1.0, in_inertia=False), _SOLIDS),
-    Kind("centre of mass left out of C", ("coupling", *_CORIOLIS), _of(_no_coupling), _SOLIDS),
+    Kind("added mass left out", _MASS, of_added(0.0, in_inertia=True), _PLAIN),
+    Kind("added mass twice", _MASS, of_added(2.0, in_inertia=True), _PLAIN),
+    Kind("C_A left out", _CORIOLIS, of_added(0.0), _SOLIDS),
+    Kind("C_A twice", _CORIOLIS, of_added(2.0), _SOLIDS),
+    Kind("C_A with the other sign", _CORIOLIS, of_added(-1.0), _SOLIDS),
+    Kind("centre of mass left out of C", ("coupling", *_CORIOLIS), of(centre_in_one), _SOLIDS),
     Kind("drag left out", _DRAG, _scaled(_drag, 0.0), _SOLIDS),
     Kind("drag of another size", _DRAG, _scaled(_drag, 1.06), _SOLIDS),
     Kind("thrust left out", _PUSH, _scaled(_thrust, 0.0), _PLAIN),
@@ -148,7 +114,7 @@ WATER_KINDS: Final = (
     Kind("velocity over ground", ("over ground", "moving frame"), _over_ground, ("current",)),
     Kind("drag by the velocity over ground", _DRAG, _drag_over_ground, ("current",)),
     Kind("motor without lag", ("m ", "lag"), without_lag, ("steered",)),
-    Kind("slower motor", ("m ", "rate"), _slower_motor, ("steered",)),
+    Kind("slower motor", ("m ", "rate"), slower_motor, ("steered",)),
     Kind("coefficient p of another size", ("a_", "M_", "p "), _coefficient, ("clebsch",)),
     Kind("coupling left out", ("coupling", "b_", "M_", "q"), _without_coupling, ("clebsch",)),
 )
@@ -166,26 +132,11 @@ NOT_KNOWN_IN_WATER: Final = (
 _NAMES: Final = ("u1", "u2", "u3", "w1", "w2", "w3")
 
 
-def skew(a: Floats) -> Floats:
-    """Return the matrix of a x."""
-    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
-
-
 def _solid(body: Sample, draw: Draw) -> Sample:
     """A rigid body with an added mass; its origin is not its centre of mass."""
-    mass, inertia = numbers(draw, 2, 4, 1), numbers(draw, 0.8, 2)
+    mass, inertia = float(numbers(draw, 2, 4, 1)[0]), numbers(draw, 0.8, 2)
     centre, added = numbers(draw, -0.15, 0.15), numbers(draw, 0.3, 2, 6)
-    lever = skew(centre)
-    dry = np.zeros((6, 6))
-    dry[:3, :3], dry[:3, 3:], dry[3:, :3] = mass * np.eye(3), -mass * lever, mass * lever
-    dry[3:, 3:] = np.diag(inertia) - mass * lever @ lever
-    solid = {
-        "mass": mass[0],
-        "inertia": inertia,
-        "centre_of_mass": centre,
-        "added_mass": added,
-    }
-    return replace(body, mass=dry + np.diag(added), dry=dry, solid=solid)
+    return solid_of(body, mass, inertia, centre, added)
 
 
 def _both(lines: list[str]) -> tuple[str, str]:

@@ -10,18 +10,13 @@ import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Acting, Floats, Sample, sample
 from taylor_verify_reports.studies.causes.kind import Kind
+from taylor_verify_reports.studies.causes.kinds_of_loads import without_lag
+from taylor_verify_reports.studies.causes.loaded import GRID, lagging, numbers, on_grid, texts
 from taylor_verify_reports.studies.causes.simulated import Rows, integrated, law, rotation
 from taylor_verify_reports.studies.causes.stepping import Make
 
-# A multiple of this is a double, and a short decimal text.
-GRID: Final = 64
 Draw = np.random.Generator
 Loaded = Callable[[Sample, Draw], Sample]
-
-
-def on_grid(values: Floats) -> Floats:
-    """Return the nearest multiples of 1/64."""
-    return np.asarray(np.round(np.asarray(values) * GRID) / GRID)
 
 
 def plain(sort: str, draw: Draw, loaded: Loaded | None = None) -> Sample:
@@ -41,16 +36,6 @@ def plain(sort: str, draw: Draw, loaded: Loaded | None = None) -> Sample:
         digits=int(draw.choice([9, 12])),
     )
     return loaded(body, draw) if loaded else body
-
-
-def numbers(draw: Draw, low: float, high: float, count: int = 3) -> Floats:
-    """Draw multiples of 1/64."""
-    return on_grid(draw.uniform(low, high, count))
-
-
-def texts(lines: list[str]) -> str:
-    """Return texts as a scene has them."""
-    return "[" + ", ".join(f'"{line}"' for line in lines) + "]"
 
 
 def _moment(lines: list[str]) -> tuple[str, ...]:
@@ -98,19 +83,6 @@ def pulsed(body: Sample, draw: Draw) -> Sample:
     lines = [f"{a} if t < {off} else 0" for a in size]
     acting = Acting(load=lambda t, v, q, own: size * (t < off), switches=(off,))
     return replace(body, lines=_moment(lines), acting=acting)
-
-
-def lagging(body: Sample, draw: Draw) -> Sample:
-    """An own state: the moment follows what a controller asks for with a lag."""
-    kp, kd, pace = (float(x) for x in numbers(draw, 0.3, 0.9, 3))
-    lines = [f"{pace}*(-{kp}*q{i} - {kd}*w{i} - m{i})" for i in (1, 2, 3)]
-    tables = ("[states]", f"m = {{ start = [0, 0, 0], rate = {texts(lines)} }}")
-    acting = Acting(
-        load=lambda t, v, q, own: own,
-        start=np.zeros(3),
-        rate=lambda t, v, q, own: pace * (-kp * q[1:] - kd * v - own),
-    )
-    return replace(body, lines=_moment(["m1", "m2", "m3"]), tables=tables, acting=acting)
 
 
 def sampled(body: Sample, draw: Draw) -> Sample:
@@ -191,16 +163,6 @@ def _taken(s: Sample, late: bool) -> Rows:
     else:
         after = Acting(load=lambda t, v, q, m: take(t, v, q, m))
     own.acting = after
-    return integrated(s, own)
-
-
-def without_lag(s: Sample, d: Draw, size: float) -> Rows:
-    """Return motors that follow at once: their states are those at which their rates are zero."""
-    own, rate, load, none = law(s), s.acting.rate, s.acting.load, 0 * s.acting.start
-    pace = float(-(rate(0.0, s.v0, s.q0, none + 1) - rate(0.0, s.v0, s.q0, none))[0])
-    own.acting = replace(
-        s.acting, load=lambda t, v, q, m: load(t, v, q, rate(t, v, q, none) / pace)
-    )
     return integrated(s, own)
 
 

@@ -19,6 +19,7 @@ from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.process.protocol import question
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
+from taylor_verify_reports.studies.causes.loaded import on_grid
 from taylor_verify_reports.studies.vectors.bodies_in_water import IN_WATER
 from taylor_verify_reports.studies.vectors.bodies_under_loads import (
     OWN_STATES,
@@ -26,7 +27,6 @@ from taylor_verify_reports.studies.vectors.bodies_under_loads import (
     Draw,
     Loaded,
     driven,
-    on_grid,
     plain,
 )
 
