@@ -15,6 +15,11 @@ from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.words.causes import with_numbers
 
+# Digits of a short number, and the part by which one may be off.
+_SHORT: Final = 2
+_NEARLY: Final = 1e-4
+# The effect of a number may be so many times less than in proportion.
+_FARTHER: Final = 30.0
 # Bodies whose entries agree to this part are one.
 _SAME_BODY: Final = 1e-6
 # A change below this part of its natural size is none.
@@ -112,6 +117,25 @@ def _is_written(number: float, right: float, floor: float) -> bool:
         return True  # 0, for a number that is none
     unknown = min(max(_NEAR * size, _ROUNDINGS * floor * abs(number - right)), _FAR * size)
     return abs(written - number) <= unknown and written != right
+
+
+def short(numbers: Floats) -> Floats:
+    """Return numbers in so few digits that one who writes a scene may have chosen them."""
+    return np.array([float(f"{x:.{_SHORT}g}") for x in numbers])
+
+
+def is_short(candidate: Candidate) -> bool:
+    """Return True if the numbers of a candidate differ from the scene's by short ones."""
+    change = candidate.numbers - candidate.family.right
+    return bool(np.all(np.abs(change - short(change)) <= _NEARLY * np.abs(change)))
+
+
+def may_explain(candidate: Candidate, numbers: Floats, allowed: float) -> bool:
+    """Return True if other numbers may leave no more than allowed: one number explains in proportion."""
+    if candidate.count > 1:
+        return True
+    apart, explains = numbers - candidate.numbers, candidate.numbers - candidate.family.right
+    return bool(np.all(np.abs(apart) <= _FARTHER * allowed * np.abs(explains)))
 
 
 def are_same(changes: Changes, other: Changes) -> bool:

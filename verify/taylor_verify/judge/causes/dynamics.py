@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.actuator_limits import new_limits
+from taylor_verify.judge.causes.arc_response import sketched_rests
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.blind_motions import has_one_pace, is_on_a_line
 from taylor_verify.judge.causes.budget import Spent
@@ -286,13 +287,10 @@ class Search:
 
     def _near(self, faults: Sequence[Family]) -> Iterator[Family]:
         """Yield the faults that leave little by few steps, whose error the right scene has too."""
-        evidence = self.evidence
-        sets = [fault.changes(fault.right) for fault in faults]
-        right, *every = evidence.sketched([{}, *sets])
-        for fault, defects in zip(faults, every, strict=True):
-            rest = evidence.of_right + defects - right
+        rests = sketched_rests(self.evidence, [fault.changes(fault.right) for fault in faults])
+        for fault, rest in zip(faults, rests, strict=True):
             self._left_by.append((fault, rest))
-            if np.linalg.norm(rest) < 2 * _FAULT * evidence.size:
+            if np.linalg.norm(rest) < 2 * _FAULT * self.evidence.size:
                 yield fault
 
     def fitted(self, families: Sequence[Family]) -> Iterator[Candidate]:
@@ -379,7 +377,7 @@ class Search:
                 self.answer.budget.at_least(_FOR_ONE)
             # A step may lead to a number that no scene has.
             with suppress(ValueError):
-                fit = gauss_newton(self.evidence, family)
+                fit = gauss_newton(self.evidence, family, each.begin(self.evidence))
                 if family.kind == "clock" and isinstance(self.evidence, Arcs) and not counts:
                     fit = by_factor(self.evidence, family, fit)
                 if np.isfinite(fit.size):

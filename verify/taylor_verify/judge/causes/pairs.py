@@ -24,6 +24,8 @@ _LINEAR: Final = 0.15
 _ALONE: Final = 0.97
 # A fault and a family leave less than this part of what each of them leaves alone.
 _OF_BOTH: Final = 0.5
+# A linear fit that leaves no more is good.
+_GOOD: Final = 0.3
 # Kinds that are one class: no two of them make a pair.
 _OF_INERTIA: Final = dict.fromkeys(
     ("body", "part of the body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
@@ -37,6 +39,14 @@ class Linear:
     family: Family
     slopes: Floats
     left: float
+
+    def begin(self, evidence: Evidence) -> Floats:
+        """Return the numbers at which a fit begins: those of the linear fit, if it is good and of one."""
+        right = self.family.right
+        if self.family.count > 1 or self.left > _GOOD:
+            return right
+        step = np.linalg.lstsq(self.slopes, evidence.of_right.ravel(), rcond=None)[0]
+        return np.asarray(right - step)
 
 
 def _class(family: Family) -> str:

@@ -11,7 +11,14 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.budget import Spent
-from taylor_verify.judge.causes.candidate import Candidate, Cause, are_same
+from taylor_verify.judge.causes.candidate import (
+    Candidate,
+    Cause,
+    are_same,
+    is_short,
+    may_explain,
+    short,
+)
 from taylor_verify.judge.causes.fit import least_rest
 from taylor_verify.judge.causes.fitted_bodies import described
 from taylor_verify.judge.causes.float_answer import Answer, Motion
@@ -38,7 +45,6 @@ NOTHING: Final = 1e-9
 # families with numbers fit it to one order more, as a damping and a load do where a body grows.
 FAIR: Final = 1e-6
 _FAIR_PAIR: Final = 1e-8
-_SHORT: Final = 2
 # Short numbers leave no more than those that fit best, but for the error of the search, and not by chance.
 _AS_LITTLE: Final = 1.01
 _OF_SHORT: Final = 1e-4
@@ -185,7 +191,7 @@ class Choice:
         most = max(most * _OF_EACH_NUMBER ** max(0, count - 1), NOTHING)
         can_be_better = count > 0 and self._polished < _POLISHED
         # One number costs no more to fit once more than to be tried with fewer digits, unless it has them.
-        tries_short = count > 1 or not can_be_better or self._is_short(candidate)
+        tries_short = count > 1 or not can_be_better or is_short(candidate)
         if proof.worst <= min(PAIR, most) and self._is_evident(proof, tries_short):
             return proof
         if can_be_better:
@@ -216,17 +222,14 @@ class Choice:
             return True
         if not tries_short or proven.worst > _OF_SHORT:
             return False
-        differences = family.right + _short(candidate.numbers - family.right)
+        differences = family.right + short(candidate.numbers - family.right)
         enough, both = (
             max(_AS_LITTLE * proven.worst, self._least),
-            (_short(candidate.numbers), differences),
+            (short(candidate.numbers), differences),
         )
-        some = (self._left(replace(candidate, numbers=numbers)) for numbers in both)
-        return any(short is not None and short.worst <= enough for short in some)
-
-    def _is_short(self, candidate: Candidate) -> bool:
-        change = candidate.numbers - candidate.family.right
-        return bool(np.all(np.abs(change - _short(change)) <= _OF_SHORT * np.abs(change)))
+        near = [numbers for numbers in both if may_explain(candidate, numbers, enough)]
+        some = (self._left(replace(candidate, numbers=numbers)) for numbers in near)
+        return any(each is not None and each.worst <= enough for each in some)
 
     def _leaves_rounding(self, proven: _Proven, groups: Sequence[str]) -> bool:
         """Return True if what is left of groups is no more than the file, and the search, round off."""
@@ -371,13 +374,14 @@ class Choice:
             large = np.where(np.abs(numbers) > least * family.scale, numbers, 0.0)
             rounded = np.array([float(f"{x:.{digits}g}") for x in large])
             shorter = np.where(is_own, family.right, rounded)
-            short = replace(candidate, numbers=shorter)
+            if not may_explain(candidate, shorter, allowed):
+                continue
             with suppress(Spent, ValueError):
-                left = self._left(short)
+                left = self._left(replace(candidate, numbers=shorter))
                 if left is not None and left.worst <= allowed:
                     return left
             if np.all(np.abs(shorter - numbers) <= NOTHING * np.abs(numbers)):
-                return replace(proven, candidate=short)
+                return replace(proven, candidate=replace(candidate, numbers=shorter))
         return proven
 
     def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool, bool, bool, bool, int]:
@@ -392,7 +396,3 @@ class Choice:
         digits = sum(len(f"{number:.6g}") for number in candidate.numbers)
         is_factor = not candidate.family.labels
         return candidate.count, not is_written, is_new, has_number, is_clock, is_factor, digits
-
-
-def _short(numbers: Floats) -> Floats:
-    return np.array([float(f"{x:.{_SHORT}g}") for x in numbers])
