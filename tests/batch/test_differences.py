@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from taylor_verify.batch.differences import FACTOR, LEVEL, Direction, compare
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
+from taylor_verify.solvers.trajectory import Outcome
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 WORSE, BETTER, CHANGED, OTHER_QUESTION, UNAVAILABLE = Direction
@@ -219,8 +220,20 @@ def test_a_run_that_did_not_finish_is_worse_in_every_row() -> None:
 def test_a_rung_that_one_machine_lacks_is_named_and_not_compared() -> None:
     """A run unavailable on either side is left out with all its quantities, and its rung alone."""
     rows = [row(rung="f80"), row(rung="f80", quantity="T")]
-    absent = [row(rung="f80", verdict=Status.UNAVAILABLE, max=None, ratio=None)]
+    lacks = {"verdict": Status.UNAVAILABLE, "outcome": Outcome.NO_FORMAT.value}
+    absent = [row(rung="f80", **lacks, max=None, ratio=None)]
     for old, new in ((rows, absent), (absent, rows)):
         compared = compare([*old, row()], [*new, row()])
         assert compared.compared == 1
         assert [each.direction for each in compared.all] == [UNAVAILABLE]
+
+
+@pytest.mark.parametrize("outcome", [Outcome.UNSUITED, Outcome.NO_PACKAGE])
+def test_a_run_that_a_solver_no_longer_makes_is_worse(outcome: Outcome) -> None:
+    """Its verdict, and each row that is gone, are regressions; a machine's number formats are none."""
+    rows = [row(), row(quantity="T")]
+    absent = [row(verdict=Status.UNAVAILABLE, outcome=outcome.value, max=None, ratio=None)]
+    worse, back = compare(rows, absent), compare(absent, rows)
+    assert [each.quantity for each in worse.towards(WORSE)] == ["T", "omega"]
+    assert not back.towards(WORSE)
+    assert not compare(absent, absent).all

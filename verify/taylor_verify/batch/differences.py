@@ -56,6 +56,7 @@ from taylor_verify.records.json_text import finite
 from taylor_verify.records.quantities import COMPLETE, SOUND_ATTITUDE
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
+from taylor_verify.solvers.trajectory import Outcome
 
 FACTOR: Final = 10.0
 LEVEL: Final = 0.5
@@ -132,11 +133,11 @@ def compare(before: Iterable[Verdict], now: Iterable[Verdict]) -> Differences:
     """Compare every row of ``now`` with that of ``before`` for its scene, solver, setting, rung, quantity.
 
     A row that exists on one side only is a difference. A run on a rung that one of the two machines does
-    not have is named and not compared.
+    not have is named and not compared; one that a solver is not suited for, or whose package is gone, is.
     """
     # Whether the row COMPLETE exists depends on the options of each call, so it is not compared.
     old, new = ([v for v in rows if v.quantity != COMPLETE] for rows in (before, now))
-    lacking = {v.run for v in (*old, *new) if v.verdict is Status.UNAVAILABLE}
+    lacking = {v.run for v in (*old, *new) if _lacks_rung(v)}
     earlier, later = (
         {(v.run, v.quantity): v for v in rows if v.run not in lacking} for rows in (old, new)
     )
@@ -146,11 +147,15 @@ def compare(before: Iterable[Verdict], now: Iterable[Verdict]) -> Differences:
     differing += [
         Difference.of(v, Direction.UNAVAILABLE, "the rung on both machines", "it on one")
         for v in (*old, *new)
-        if v.verdict is Status.UNAVAILABLE
+        if _lacks_rung(v)
     ]
     shared = [(earlier[key], v) for key, v in later.items() if key in earlier]
     differing += [each for pair in shared for each in _decisive(*pair)]
     return Differences(len(shared), tuple(differing))
+
+
+def _lacks_rung(verdict: Verdict) -> bool:
+    return verdict.verdict is Status.UNAVAILABLE and verdict.outcome == Outcome.NO_FORMAT.value
 
 
 def _missing(verdict: Verdict) -> Difference:
@@ -182,6 +187,8 @@ def _of_row(old: Verdict, new: Verdict) -> Iterator[Difference]:
     if old.verdict is not new.verdict:
         words = old.verdict.value, new.verdict.value
         yield Difference.of(new, _direction_of_verdict(old, new), *words, "verdict")
+        if Status.UNAVAILABLE in (old.verdict, new.verdict):
+            return
     if old.outcome != new.outcome:
         yield Difference.of(new, Direction.CHANGED, old.outcome, new.outcome, "outcome")
     yield from _of_cost(old, new)
@@ -208,6 +215,8 @@ def _direction_of_verdict(old: Verdict, new: Verdict) -> Direction:
     # Verdicts by different tolerances cannot be compared with each other.
     if old.tolerance != new.tolerance and old.is_compared and new.is_compared:
         return Direction.CHANGED
+    if Status.UNAVAILABLE in (old.verdict, new.verdict):
+        return Direction.WORSE if new.verdict is Status.UNAVAILABLE else Direction.BETTER
     was, now = (_GRADES.index(exit_status([verdict])) for verdict in (old, new))
     return Direction.CHANGED if was == now else Direction.WORSE if now > was else Direction.BETTER
 

@@ -20,13 +20,21 @@ def dumps(work: Any) -> bytes:
     except Exception as error:
         if not _has_cloudpickle():
             mend = "write it at the top of a module, or install cloudpickle"
-            expected = f"a solver that other processes can import ({mend})"
-            raise ValueError(f"expected {expected}, got: {error} @ solver") from None
+            raise _refusal(error, mend) from None
     else:
         if _SCRIPT not in content or not _has_cloudpickle():
             return content
     cloudpickle: Any = import_module("cloudpickle")
-    return bytes(cloudpickle.dumps(work))
+    try:
+        return bytes(cloudpickle.dumps(work))
+    except Exception as error:
+        mend = "make its locks, files and connections inside it"
+        raise _refusal(error, mend) from None
+
+
+def _refusal(error: Exception, mend: str) -> ValueError:
+    expected = f"a solver that can be sent to other processes ({mend})"
+    return ValueError(f"expected {expected}, got: {error} @ solver")
 
 
 def needs_script(content: bytes) -> bool:

@@ -48,9 +48,7 @@ def _page(
         "## taylor-verify",
         bold(prose(beginning)) if beginning else "",
         counts(verdicts),
-        bold(
-            f"{beyond} more of the rows regressed from the baseline, or cannot be held against it."
-        )
+        bold(f"{beyond} more of the rows count as no pass, for the reasons below.")
         if beyond
         else "",
         _table("What is no pass, or not what it was", notable[:most], reasons=True),

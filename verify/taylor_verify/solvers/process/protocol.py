@@ -135,6 +135,9 @@ def _merged(parts: Mapping[str, Value], derived: Mapping[str, Value]) -> dict[st
 
 # The answer.
 
+# So many characters of an output that is no answer are shown.
+_SHOWN: Final = 60
+
 
 def longest_answer(problem: Problem) -> int:
     """Return the bytes that an answer to this problem may have: room for every number's every bit."""
@@ -149,6 +152,8 @@ def read(text: bytes, problem: Problem) -> Answer:
     """
     document = _parsed(text)
     if "unsuited" in document:
+        if more := [name for name in document if name != "unsuited"]:
+            raise Misanswer(f"expected unsuited alone, or columns, got {more[0]} beside it")
         if why := _sentence(document, "unsuited").strip():
             raise Unsuited(why)
         raise Misanswer("expected a sentence that says why @ unsuited, got an empty one")
@@ -176,8 +181,10 @@ def _parsed(text: bytes) -> Mapping[str, Any]:
     except json.JSONDecodeError as error:
         where = f"line {error.lineno}, column {error.colno}"
         cut = " (where the answer ends)" if error.pos >= len(text.rstrip()) - 1 else ""
+        begins = text.decode("utf-8", "replace").strip()[:_SHOWN]
         raise Misanswer(
-            f"expected one JSON object, got no JSON at {where}{cut}: {error.msg}"
+            f"expected one JSON object on standard output and nothing else, got no JSON at {where}{cut}: "
+            f"{error.msg}; the output begins {begins!r}"
         ) from error
     except (ValueError, RecursionError) as error:
         raise Misanswer(f"expected one JSON object, got {error}") from error
