@@ -8,10 +8,13 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
 from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.families.toml_text import toml
 from taylor_verify.scenes.instants import EquallySpaced
@@ -104,6 +107,33 @@ def text_of(
     head = {"title": "Made", "model": model, "track": [*track]}
     time = {"end": end, "samples": samples}
     return toml({**head, "body": body, "initial": initial, "time": time}, repr)
+
+
+def scene_text(
+    body: str = "inertia = [1, 2, 3]",
+    initial: str = "omega = [1, 2, 3]",
+    tables: str = "",
+    time: str = "end = 1\nsamples = 2",
+    top: str = "",
+) -> str:
+    """The text of a scene from the lines of its tables; its start tells its model, unless the top does."""
+    model = (
+        "" if "model" in top else f'model = "{"euler" if "omega =" in initial else "kirchhoff"}"'
+    )
+    head = f'title = "Made"\n{top}\n{model}'
+    return f"{head}\n[body]\n{body}\n{tables}\n[initial]\n{initial}\n[time]\n{time}\n"
+
+
+def read_scene(*parts: str, **others: str) -> Scene:
+    """The scene of that text."""
+    return read(scene_text(*parts, **others), "made")
+
+
+def faults_of(*parts: str, **others: str) -> tuple[str, ...]:
+    """The faults for which that text is refused."""
+    with pytest.raises(Refused) as refused:
+        read_scene(*parts, **others)
+    return refused.value.faults
 
 
 # Scenes that are judged in a moment: three instants, the start among them, and three without it.

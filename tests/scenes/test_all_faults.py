@@ -6,24 +6,11 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from builders.scenes import faults_of
 
-from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.loads.states import Held
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 
-SCENE = """
-title = "Faults"
-{top}
-[body]
-{body}
-[define]
-{define}
-[initial]
-omega = [1, 2, 0]
-[time]
-end = 1
-samples = 2
-"""
 TEXTS = 'inertia = [1, 2, 3]\nmoment = ["foo", "sign(w1)", "1/(2 - 2)*w2"]'
 CYCLE = 'a = "b"\nb = "a"'
 OF_TEXTS = [
@@ -34,9 +21,8 @@ OF_TEXTS = [
 
 def places(body: str = TEXTS, define: str = CYCLE, top: str = 'model = "euler"') -> list[str]:
     """The places of all faults, sorted."""
-    with pytest.raises(Refused) as refused:
-        read(SCENE.format(top=top, body=body, define=define), "faults")
-    return sorted(line.rpartition(" @ ")[2].split(" (")[0] for line in refused.value.faults)
+    lines = faults_of(body, "omega = [1, 2, 0]", f"[define]\n{define}", top=top)
+    return sorted(line.rpartition(" @ ")[2].split(" (")[0] for line in lines)
 
 
 @pytest.mark.parametrize(

@@ -8,31 +8,17 @@ from math import radians
 
 import numpy as np
 import pytest
+from builders.scenes import read_scene
 from scipy.spatial.transform import Rotation
 
 from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.records.faults import Refused
-from taylor_verify.scenes.reading.reader import read
-
-SCENE = """
-title = "Attitude"
-model = "euler"
-track = ["attitude"]
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, 2, 3]
-{attitude}
-[time]
-end = 1
-samples = 2
-"""
 
 
 def turned(attitude: str) -> Matrix:
-    q = read(SCENE.format(attitude=attitude), "attitude").initial.attitude
-    return rotation_matrix(q)
+    scene = read_scene(initial=f"omega = [1, 2, 3]\n{attitude}", top='track = ["attitude"]')
+    return rotation_matrix(scene.initial.attitude)
 
 
 def rotation(rows: Sequence[Sequence[Fraction]]) -> Rotation:

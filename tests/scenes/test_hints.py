@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 import pytest
+from builders.scenes import faults_of, read_scene
 
 from taylor_verify.records.faults import Refused
-from taylor_verify.scenes.reading.reader import read
 
 BODIES = {
     "euler": "inertia = [1, 2, 3]",
@@ -22,13 +22,12 @@ STARTS = {
 def refusal(model: str, part: str, key: str) -> str:
     """The one fault of a sound scene with one key more."""
     extra = {name: f"{key} = 1" if name == part else "" for name in ("", "body", "initial", "time")}
-    text = (
-        f'title = "x"\nmodel = "{model}"\n{extra[""]}\n[body]\n{BODIES[model]}\n{extra["body"]}\n'
-        f"[initial]\n{STARTS[model]}\n{extra['initial']}\n[time]\nend = 1\nsamples = 2\n{extra['time']}\n"
+    (line,) = faults_of(
+        f"{BODIES[model]}\n{extra['body']}",
+        f"{STARTS[model]}\n{extra['initial']}",
+        time=f"end = 1\nsamples = 2\n{extra['time']}",
+        top=f'model = "{model}"\n{extra[""]}',
     )
-    with pytest.raises(Refused) as refused:
-        read(text, "a test")
-    (line,) = refused.value.faults
     return line
 
 
@@ -106,14 +105,9 @@ def test_the_lines_of_a_sentence_are_read(model: str, key: str) -> None:
     space = [line for line in lines if line[0] in "ob" and line[1] == " "]
     body = [line for line in lines if line not in space and not line.startswith("model")]
     assert body
-    text = "\n".join(
-        [
-            *('title = "x"', f'model = "{model}"', "[body]", BODIES[model], *body),
-            *("[define]", "n = 1", "m1 = 1", "m2 = 2", "m3 = 3", "[space]", *space),
-            *("[initial]", STARTS[model], "[time]", "end = 1", "samples = 2"),
-        ]
-    )
-    assert read(text, "a test").body.loads is not None or "current" in body[0]
+    tables = ["[define]", "n = 1", "m1 = 1", "m2 = 2", "m3 = 3", "[space]", *space]
+    scene = read_scene("\n".join([BODIES[model], *body]), STARTS[model], "\n".join(tables))
+    assert scene.body.loads is not None or "current" in body[0]
 
 
 @pytest.mark.parametrize(
@@ -135,6 +129,5 @@ def test_a_start_in_the_order_of_others_is_written_in_ours(
     model: str, line: str, written: str
 ) -> None:
     """The sentence has the numbers in the lines of a scene."""
-    text = f'title = "x"\nmodel = "{model}"\n[body]\n{BODIES[model]}\n[initial]\n{STARTS[model]}\n'
     with pytest.raises(Refused, match=re.escape(f"`{written}`")):
-        read(f"{text}{line}\n[time]\nend = 1\nsamples = 2\n", "a test")
+        read_scene(BODIES[model], f"{STARTS[model]}\n{line}")

@@ -11,36 +11,24 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from builders.scenes import read_scene, scene_text
 
 from taylor_verify.exact import exact
 from taylor_verify.records.faults import Refused
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 # Seconds of the processor that any text may take.
 PATIENCE = 1.0
 
-SCENE = """
-title = "Texts"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-moment = [{moment}]
-{tables}
-[initial]
-omega = [1, 2, 3]
-[time]
-end = 1
-samples = 2
-"""
 
-
-def scene(moment: str = "0, 0, 0", tables: str = "", folder: Path | None = None) -> Scene:
-    return read(SCENE.format(moment=moment, tables=tables), "texts", folder)
+def pushed(moment: str = "0, 0, 0") -> str:
+    return f"inertia = [1, 2, 3]\nmoment = [{moment}]"
 
 
 def of_texts(*texts: str, tables: str = "") -> Scene:
-    return scene(", ".join(map(json.dumps, (*texts, "0", "0", "0")[:3])), tables)
+    moment = ", ".join(map(json.dumps, (*texts, "0", "0", "0")[:3]))
+    return read_scene(pushed(moment), tables=tables)
 
 
 def faults(*texts: str, tables: str = "") -> tuple[str, ...]:
@@ -119,7 +107,7 @@ def answer(text: str) -> tuple[float, str]:
     tables = f"[define]\nd = {quoted}\n[space]\no = [1, {quoted}, 0]\n[states]\n{states}"
     began = time.process_time()
     try:
-        loads = scene(f"{quoted}, 0, 0", tables).body.loads
+        loads = read_scene(pushed(f"{quoted}, 0, 0"), tables=tables).body.loads
         reply = "no steps" if loads is None else f"{len(loads.piece(loads.origin).steps)} steps"
     except Refused as refused:
         reply = str(refused)
@@ -204,7 +192,7 @@ def test_all_faults_of_all_texts_come_at_once() -> None:
 def test_a_definition_is_checked_where_no_load_is_written() -> None:
     """A scene of numbers alone may have a vocabulary, which is read all the same."""
     with pytest.raises(Refused, match=r"got `nix` @ define\.d, column 5"):
-        scene(tables='[define]\nd = "1 + nix"')
+        read_scene(tables='[define]\nd = "1 + nix"')
 
 
 def test_a_fault_of_a_definition_is_said_once_and_where_it_stands() -> None:
@@ -299,7 +287,7 @@ def test_long_exact_numbers_are_not_multiplied_for_long() -> None:
 def of_file(tmp_path: Path, keys: str, content: str = "t,T\n0,1\n1,2\n") -> Scene:
     (tmp_path / "scene").mkdir(exist_ok=True)
     (tmp_path / "scene" / "data.csv").write_text(content, encoding="utf-8")
-    text = SCENE.format(moment='"p", 0, 0', tables=f"[tables]\np = {{ {keys} }}")
+    text = scene_text(pushed('"p", 0, 0'), tables=f"[tables]\np = {{ {keys} }}")
     file = tmp_path / "scene" / "scene.toml"
     file.write_text(text, encoding="utf-8")
     return load(file)
@@ -385,4 +373,4 @@ def test_numbers_of_too_many_bits_are_refused_before_they_are_made(text: str) ->
 def test_a_scene_in_no_folder_has_no_files() -> None:
     """A scene that is read from a text says so."""
     with pytest.raises(Refused, match=r"got a scene that is in no folder @ tables\.p\.file"):
-        scene(tables=f'[tables]\np = {{ file = "data.csv", {COLUMNS} }}')
+        read_scene(tables=f'[tables]\np = {{ file = "data.csv", {COLUMNS} }}')

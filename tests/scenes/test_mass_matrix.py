@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from builders.scenes import remus_inertia
+from builders.scenes import read_scene, remus_inertia
 from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -16,7 +16,7 @@ from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, StandIn
 from taylor_verify.scenes.stand_in import written as irrational
@@ -36,11 +36,7 @@ VECTOR = st.tuples(ENTRY, ENTRY, ENTRY)
 
 
 def vehicle(body: str, start: str = VELOCITIES) -> Scene:
-    return read(
-        f'title = "x"\nmodel = "kirchhoff"\n[body]\n{body}\n[initial]\n{start}\n'
-        "[time]\nend = 1\nsamples = 2\n",
-        "a test",
-    )
+    return read_scene(body, start)
 
 
 def solid(scene: Scene) -> ImmersedBody:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from builders.scenes import scene_text
 
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes import library
@@ -101,8 +102,5 @@ def test_hostile_numbers_are_refused_before_they_are_built(
 ) -> None:
     """No literal, however large, long or deep, hangs the reader or escapes as another exception."""
     file = tmp_path / "hostile.toml"
-    file.write_text(
-        'title = "x"\nmodel = "euler"\n[body]\ninertia = [1, 2, 3]\n'
-        f"[initial]\nomega = [1, 2, {text}]\n[time]\nend = 1\nsamples = 2\n"
-    )
+    file.write_text(scene_text(initial=f"omega = [1, 2, {text}]"))
     assert fragment in str(refusal(file))

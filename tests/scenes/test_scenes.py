@@ -9,7 +9,7 @@ from itertools import permutations
 
 import pytest
 from builders.free_spins import rotation
-from builders.scenes import remus_inertia
+from builders.scenes import faults_of, read_scene, remus_inertia
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -38,22 +38,15 @@ def euler(
     body: str = "inertia = [1, 2, 3]", time: str = "end = 10\nsamples = 11", **more: str
 ) -> Scene:
     """A free body of the model euler, with parts of its text replaced."""
-    return read(
-        f'title = "x"\nmodel = "euler"\n{more.get("top", "")}\n[body]\n{body}\n'
-        f"[initial]\nomega = [0.1, 1, 0.3]\n{more.get('initial', '')}\n[time]\n{time}\n",
-        "a test",
-    )
+    start = f"omega = [0.1, 1, 0.3]\n{more.get('initial', '')}"
+    return read_scene(body, start, time=time, top=more.get("top", ""))
 
 
 def kirchhoff(top: str = "") -> Scene:
     """Clebsch's body, with lines put at the top of its text."""
-    return read(
-        f'title = "x"\nmodel = "kirchhoff"\n{top}\n[body]\n'
-        "clebsch = { p = 1, p_prime = 2, q = 0.1, q_prime = 0.2, r = 1, r_prime = 0.5 }\n"
-        "[initial]\nlinear_impulse = [0.1, 0.2, 1]\nangular_impulse = [0.3, 0, 1]\n"
-        "[time]\nend = 1\nsamples = 2\n",
-        "a test",
-    )
+    body = "clebsch = { p = 1, p_prime = 2, q = 0.1, q_prime = 0.2, r = 1, r_prime = 0.5 }"
+    start = "linear_impulse = [0.1, 0.2, 1]\nangular_impulse = [0.3, 0, 1]"
+    return read_scene(body, start, top=top)
 
 
 # Numbers
@@ -115,19 +108,12 @@ def test_a_quaternion_is_kept_as_written() -> None:
 # Instants
 
 
-def test_samples_are_equally_spaced_and_exact() -> None:
-    """Three samples a third apart are exact thirds, both ends included."""
-    clock = euler(time="end = 1\nsamples = 4").clock
-    assert clock.instants == (0, Fraction(1, 3), Fraction(2, 3), 1)
-
-
 @given(INTEGERS, INTEGERS.filter(bool), st.integers(2, 50))
-def test_samples_begin_at_the_start_and_end_at_the_end(start: int, span: int, samples: int) -> None:
-    """Whatever the sign of the span, the first sample is the start, the last one the end."""
+def test_samples_are_equally_spaced_and_exact(start: int, span: int, samples: int) -> None:
+    """Whatever the sign of the span, samples are exact parts of it, from the start to the end."""
     clock = euler(time=f"start = {start}\nend = {start + span}\nsamples = {samples}").clock
-    assert len(clock.instants) == samples
-    assert (clock.instants[0], clock.instants[-1]) == (start, start + span)
-    assert clock.elapsed[-1] == span
+    assert clock.elapsed == tuple(Fraction(k * span, samples - 1) for k in range(samples))
+    assert clock.instants == tuple(start + t for t in clock.elapsed)
 
 
 def test_listed_instants_are_taken_as_they_are() -> None:
@@ -410,14 +396,6 @@ def test_the_model_must_be_known_before_its_body_is_read() -> None:
 )
 def test_a_number_that_is_none_hides_no_fault_beside_it(inertia: str, places: list[str]) -> None:
     """Entries that are not positive or symmetric, or no numbers, are reported at once, and the time too."""
-    text = f"""
-title = "x"
-model = "euler"
-body.inertia = {inertia}
-initial.omega = [1, 2, 3]
-time = {{ end = 0, samples = 1 }}
-"""
-    with pytest.raises(Refused) as caught:
-        read(text, "x")
-    at = [line.split(" @ ")[1].split()[0] for line in caught.value.faults]
+    faults = faults_of(f"inertia = {inertia}", time="end = 0\nsamples = 1")
+    at = [line.split(" @ ")[1].split()[0] for line in faults]
     assert at == [*(f"body.inertia{place}" for place in places), "time.end", "time.samples"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
+from builders.scenes import read_scene
 
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.faults import Refused
@@ -12,30 +13,13 @@ from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
-SCENE = """
-title = "States"
-model = "euler"
-{top}
-[body]
-{body}
-{tables}
-[initial]
-omega = [1, 2, 3]
-[time]
-{time}
-"""
 RIGID = "inertia = [1, 2, 3]"
 
 
-def scene(tables: str = "", *, body: str = "", top: str = "", time: str = "") -> Scene:
+def scene(tables: str = "", *, body: str = "", **others: str) -> Scene:
     """A rigid body with these tables."""
-    text = SCENE.format(
-        top=top,
-        body=body if "inertia" in body else f"{RIGID}\n{body}",
-        tables=tables,
-        time=time or "end = 2\nsamples = 3",
-    )
-    return read(text, "states")
+    body = body if "inertia" in body else f"{RIGID}\n{body}"
+    return read_scene(body, tables=tables, **{"time": "end = 2\nsamples = 3"} | others)
 
 
 def states(text: str, **others: str) -> Loads:
