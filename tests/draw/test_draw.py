@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.motions import document
+from builders.scenes import read_scene
 from builders.trajectories import write_csv
 from builders.turns import by_turns
 from matplotlib.axes import Axes
@@ -25,7 +26,8 @@ from taylor_verify.draw.pictures import KINDS, pictures
 from taylor_verify.exact.row_arithmetic import quaternions
 from taylor_verify.plotting.picture import plotting
 from taylor_verify.records.answers import MissingLoad
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
 
 # One of each kind of body, and what it has.
 HAS = {
@@ -79,16 +81,13 @@ def shapes(axes: Axes) -> list[np.ndarray[Any, Any]]:
     return [np.asarray(points) for points in (*lines, *solids) if len(points)]
 
 
-def test_a_body_whose_wheels_cancel_its_momentum_has_no_sphere(tmp_path: Path) -> None:
+def test_a_body_whose_wheels_cancel_its_momentum_has_no_sphere() -> None:
     """H = I omega + h = 0 is no sphere, although nine digits of I omega leave a rounding."""
-    file = tmp_path / "cancelled.toml"
-    file.write_text(
-        'title = "H is 0"\nmodel = "euler"\n[body]\ninertia = [3, 2, 1]\nrotor = [-1, "-2/3", "-1/7"]\n'
-        '[initial]\nomega = ["1/3", "1/3", "1/7"]\n[time]\nend = 9\nsamples = 10\n',
-        encoding="utf-8",
+    cancelled = read_scene(
+        'inertia = [3, 2, 1]\nrotor = [-1, "-2/3", "-1/7"]', 'omega = ["1/3", "1/3", "1/7"]'
     )
     with pytest.raises(NotDrawn, match="expected a momentum with a direction, got zero"):
-        pictures(motion(load(file), 60), ["spheres"])
+        pictures(motion(cancelled, 60), ["spheres"])
 
 
 # Moving
@@ -143,7 +142,7 @@ def test_weight_points_downwards() -> None:
 @pytest.mark.slow
 def test_a_short_motion_is_animated_over_a_longer_span() -> None:
     """The span doubles until the body has turned twice; a motion with two turns stays as it is."""
-    top = read(SAMPLED.replace("samples = 5", "samples = 2"), "sampled")
+    top = sampled(2)
     short, whole = motion(top, 20), lengthened(top, motion(top, 20))
     assert turns(np.array(short["course"]["attitude"]).reshape(-1, 3, 3)) < 2
     assert whole["course"]["t"][-1] in [2.0 * 2**k for k in range(1, 5)]
@@ -190,34 +189,26 @@ def test_a_page_needs_no_network() -> None:
     assert "exact, by closed form" in shown["caption"]
 
 
-SAMPLED = """
-title = "A sampled controller"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-moment = ["m - w1/4", "-i/8", "t"]
-[states]
-m = { every = "1/2", value = "-w1" }
-i = { start = 0, rate = "w2" }
-[initial]
-omega = [0.5, 0.25, 0.125]
-[time]
-end = 2
-samples = 5
-"""
+def sampled(samples: int) -> Scene:
+    return read_scene(
+        'inertia = [1, 2, 3]\nmoment = ["m - w1/4", "-i/8", "t"]',
+        "omega = [0.5, 0.25, 0.125]",
+        '[states]\nm = { every = "1/2", value = "-w1" }\ni = { start = 0, rate = "w2" }',
+        f"end = 2\nsamples = {samples}",
+    )
 
 
 def test_loads_and_own_states_are_drawn_under_the_motion() -> None:
     """Each load and each state is a panel: the moment is what the text makes of the drawn states."""
-    drawn = motion(read(SAMPLED, "sampled"), 40)
+    drawn = motion(sampled(5), 40)
     panels = {panel.name: panel for panel in series(drawn).panels}
-    moment, sampled = panels["moment, body axes"].rows, panels["state m"]
+    moment, held = panels["moment, body axes"].rows, panels["state m"]
     omega, times = np.array(drawn["course"]["omega"]), np.array(drawn["course"]["t"])
-    assert np.allclose(moment[:, 0], sampled.rows[:, 0] - omega[:, 0] / 4, atol=1e-8)
+    assert np.allclose(moment[:, 0], held.rows[:, 0] - omega[:, 0] / 4, atol=1e-8)
     assert np.allclose(moment[:, 1], -panels["state i"].rows[:, 0] / 8, atol=1e-8)
     assert np.allclose(moment[:, 2], times, atol=1e-8)
-    assert sampled.is_held
-    assert len(np.unique(sampled.rows)) == len(np.arange(0, 2.5, 0.5))
+    assert held.is_held
+    assert len(np.unique(held.rows)) == len(np.arange(0, 2.5, 0.5))
     assert [each["heading"] for each in moving(drawn)["panels"]] == list(panels)
 
 

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.written_loads import ABOUT_AXES, Evaluated, euler, kirchhoff, rotation
+from builders.scenes import read_scene
+from builders.written_loads import Evaluated, euler, kirchhoff, rotation
 from mpmath import mp, mpf
 
 from taylor_verify.exact.conserved.conservation import Conservation, conservation
 from taylor_verify.exact.conserved.polynomial import MOST_TERMS, TooLong, multiplied, symbols_of
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
 HANGING = 'weight = { force = [1, 2, -2], at = [0, 0, "1/4"] }'
@@ -26,12 +26,10 @@ NOTHING = ["0", "0", "0"]
 def spun(*rotor: str) -> Scene:
     """A body whose wheels are driven; the third text is a moment, if there is one."""
     texts = ", ".join(f'"{text}"' for text in rotor[:2])
-    wheels = f'rotor = [{texts}, 0]\n[states]\nh = {{ start = [1, 0], rate = ["w1", "-h2 + t"] }}'
-    moment = f'moment = ["0", "{rotor[2]}", "0"]\n' if len(rotor) > 2 else ""
-    text = ABOUT_AXES.format(moment="MOMENT", omega="[1, 2, 3]", end="1")
-    text = text.replace("moment = MOMENT", moment + wheels)
-    text = text.replace('model = "euler"', 'model = "euler"\ntrack = ["attitude", "h"]')
-    return read(text, "spun")
+    moment = f'moment = ["0", "{rotor[2]}", "0"]' if len(rotor) > 2 else ""
+    states = '[states]\nh = { start = [1, 0], rate = ["w1", "-h2 + t"] }'
+    body = f"inertia = [1, 1, 1]\n{moment}\nrotor = [{texts}, 0]"
+    return read_scene(body, tables=states, top='track = ["attitude", "h"]')
 
 
 # By name: the scene, and the conserved quantities besides those of the free body.

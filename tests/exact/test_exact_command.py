@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+from builders.scenes import scene_text
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -16,29 +17,6 @@ from taylor_verify.exact.printed import decimal_text
 from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
-
-SCENE = """
-title = "A body of one's own"
-model = "{model}"
-track = {track}
-[body]
-{body}
-[initial]
-{initial}
-[time]
-start = "1/2"
-end = 3
-samples = 2
-"""
-AT_REST = SCENE.format(
-    model="kirchhoff",
-    track='["impulse"]',
-    body="clebsch = { p = 1, p_prime = 2, q = 0, q_prime = 0, r = 1, r_prime = 3 }",
-    initial="linear_impulse = [0, 0, 0]\nangular_impulse = [0, 0, 0]",
-)
-UNREAL = SCENE.format(
-    model="euler", track='["omega"]', body="inertia = [1, 2, 9]", initial="omega = [1, 2, 3]"
-)
 
 
 class Asked:
@@ -159,17 +137,6 @@ def test_the_regime_is_that_of_the_orbit_on_either_route(exact: Asked) -> None:
     assert names != {"no closed form"}
 
 
-def test_a_body_at_rest_is_printed_as_zeros_with_an_absolute_radius(
-    exact: Asked, tmp_path: Any
-) -> None:
-    """Where a vector vanishes its entries are "0" and the radius is absolute."""
-    file = tmp_path / "rest.toml"
-    file.write_text(AT_REST)
-    (row,) = exact(str(file), "--at", "2", "--digits", "8", "--route", "taylor")["rows"]
-    assert row["linear_impulse"] == row["angular_impulse"] == ["0", "0", "0"]
-    assert 0 < Fraction(row["radius"]) <= Fraction(6, 10**8)
-
-
 @pytest.mark.parametrize(
     "scene", ["euler/nesc-brick", "kirchhoff/swimmer-vehicle", "manufactured/kirchhoff-path"]
 )
@@ -251,7 +218,7 @@ def test_digits_out_of_range_are_a_wrong_call(exact: Asked, digits: str) -> None
 def test_a_tensor_of_no_real_solid_is_a_warning(exact: Asked, tmp_path: Any) -> None:
     """The triangle inequality is warned about on stderr, and the motion is computed."""
     file = tmp_path / "unreal.toml"
-    file.write_text(UNREAL)
+    file.write_text(scene_text("inertia = [1, 2, 9]"))
     assert exact(str(file), "--at", "1")["rows"]
     assert exact.status == 0
     assert "warning" in exact.error

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
+from builders.scenes import read_scene
 from builders.turns import by_turns
 
 from taylor_verify.chain import posed
@@ -14,7 +15,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import exact_value, rung
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor
 
@@ -27,11 +28,11 @@ def heavy(
 ) -> Scene:
     """A body on a fixed point under a weight of two units."""
     weight = more.get("weight", f"weight = {{ force = [0, 0, -2], at = {at} }}")
-    return read(
-        f'title = "x"\nmodel = "euler"\ntrack = ["attitude"]\n[body]\ninertia = {inertia}\n'
-        f"{weight}\n{more.get('body', '')}\n[initial]\nomega = {omega}\nattitude = {attitude}\n"
-        "[time]\nend = 2\nsamples = 2\n",
-        "a test",
+    return read_scene(
+        f"inertia = {inertia}\n{weight}\n{more.get('body', '')}",
+        f"omega = {omega}\nattitude = {attitude}",
+        time="end = 2\nsamples = 2",
+        top='track = ["attitude"]',
     )
 
 

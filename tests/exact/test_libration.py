@@ -6,13 +6,14 @@ from fractions import Fraction
 
 import pytest
 from builders.routes import motions_of_taylor
+from builders.scenes import read_scene
 from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler.libration import pitch_of
 from taylor_verify.exact.route import solution
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 25
@@ -27,11 +28,11 @@ def orbiting(**changed: str) -> Scene:
         "last": "3*n^2*(I22 - I11)*o1*o2",
     } | changed  # fmt: skip
     moment = f'["{given["first"]}", "3*n^2*(I11 - I33)*o3*o1", "{given["last"]}"]'
-    return read(
-        f'title = "x"\nmodel = "euler"\ntrack = ["attitude"]\n[body]\ninertia = {given["inertia"]}\n'
-        f'moment = {moment}\n{given["more"]}\n[define]\nn = "1/2"\n[space]\no = {given["o"]}\n[initial]\n'
-        f"omega = {given['omega']}\nattitude = {given['attitude']}\n[time]\nend = 2\nsamples = 2\n",
-        "a test",
+    return read_scene(
+        f"inertia = {given['inertia']}\nmoment = {moment}\n{given['more']}",
+        f"omega = {given['omega']}\nattitude = {given['attitude']}",
+        f'[define]\nn = "1/2"\n[space]\no = {given["o"]}',
+        top='track = ["attitude"]',
     )
 
 
@@ -92,10 +93,9 @@ def test_whatever_is_no_such_moment_has_no_closed_form(changed: dict[str, str]) 
 
 def test_from_an_attitude_that_is_not_rational_the_motion_is_enclosed() -> None:
     """A turn of 0.3 rad has no rational matrix: there is no closed form, and the route is proven."""
-    scene = read(
-        'title = "x"\nmodel = "euler"\n[body]\ninertia = [1, 1, 2]\nmoment = ["sin(t)", 0, 0]\n'
-        "[initial]\nomega = [1, 0, 0]\nrotation_vector = [0.3, 0.2, 0.1]\n[time]\nend = 2\nsamples = 2\n",
-        "a test",
+    scene = read_scene(
+        'inertia = [1, 1, 2]\nmoment = ["sin(t)", 0, 0]',
+        "omega = [1, 0, 0]\nrotation_vector = [0.3, 0.2, 0.1]",
     )
     exact = solution(scene)
     assert exact.route == "taylor"

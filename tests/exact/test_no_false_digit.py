@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 import pytest
 from builders.routes import closed_routes
-from builders.scenes import one_instant, vector
+from builders.scenes import one_instant, read_scene, vector
 from builders.turns import by_turns
 from flint import arb
 from mpmath import mp, mpf
@@ -23,7 +23,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import PI, Constant, Pi, generator
 from taylor_verify.scenes.bodies import Clebsch, RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.stand_in import stand_in
 
@@ -44,12 +44,7 @@ SHIPPED: Final = (
 
 
 def scene(body: str, initial: str, track: str = "attitude") -> Scene:
-    model = "kirchhoff" if "ellipsoid" in body else "euler"
-    return read(
-        f'title = "x"\nmodel = "{model}"\ntrack = ["{track}"]\n[body]\n{body}\n[initial]\n{initial}\n'
-        "[time]\nend = 1\nsamples = 2\n",
-        "a test",
-    )
+    return read_scene(body, initial, top=f'track = ["{track}"]')
 
 
 def printed(asked: Scene, route: str | None, t: Fraction | int, digits: int) -> dict[str, Any]:

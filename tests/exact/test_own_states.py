@@ -9,6 +9,7 @@ from itertools import product
 from typing import Any
 
 import pytest
+from builders.scenes import read_scene
 from flint import arb, ctx
 from mpmath import mp, mpf
 
@@ -24,41 +25,9 @@ from taylor_verify.exact.taylor import arcs
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 20
-ABOUT_AXES = """
-title = "About axes"
-model = "euler"
-track = [{track}]
-[body]
-inertia = [1, 1, 1]
-{body}
-[states]
-{states}
-[initial]
-omega = {omega}
-[time]
-end = {end}
-samples = 2
-"""
-SATELLITE = """
-title = "A satellite with states of its own"
-model = "euler"
-track = ["attitude", {track}]
-[body]
-inertia = [1.2, 0.9, 1.6]
-{body}
-[states]
-{states}
-[initial]
-omega = [0.3, -0.5, 0.4]
-attitude = [0.5, 0.6, -0.4, 0.45]
-[time]
-end = 1
-samples = 2
-"""
 SATELLITES = {
     "wheel of a text": (
         'rotor = ["tanh(2*h)", "sin(t)/5", 0.1]\nmoment = [0.03, 0, "-w3/9"]',
@@ -79,14 +48,20 @@ def named(states: str) -> str:
 
 def about_axes(states: str, body: str, omega: str = "[0, 0, 0]", end: str = "4") -> Scene:
     """A ball with omega for its momentum, whose states are all tracked."""
-    text = ABOUT_AXES.format(track=named(states), states=states, body=body, omega=omega, end=end)
-    return read(text, "about-axes")
+    return read_scene(
+        f"inertia = [1, 1, 1]\n{body}",
+        f"omega = {omega}",
+        f"[states]\n{states}",
+        time=f"end = {end}\nsamples = 2",
+        top=f"track = [{named(states)}]",
+    )
 
 
 def satellite(name: str) -> Scene:
     body, states = SATELLITES[name]
-    text = SATELLITE.format(track=named(states), states=states, body=body)
-    return read(text, "satellite")
+    start = "omega = [0.3, -0.5, 0.4]\nattitude = [0.5, 0.6, -0.4, 0.45]"
+    top = f'track = ["attitude", {named(states)}]'
+    return read_scene(f"inertia = [1.2, 0.9, 1.6]\n{body}", start, f"[states]\n{states}", top=top)
 
 
 def motion(scene: Scene, *times: str, digits: int = DIGITS) -> Motion:

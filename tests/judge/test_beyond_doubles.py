@@ -6,49 +6,29 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from builders.scenes import scene_text
 
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import read
 
-BODY = """
-title = "x"
-model = "euler"
-track = ["attitude"]
-[body]
-inertia = {inertia}
-moment = {moment}
-[initial]
-omega = {omega}
-[time]
-end = 10
-samples = 11
-"""
-SOLID = """
-title = "x"
-model = "kirchhoff"
-track = ["centre"]
-[body]
-clebsch = {{ p = 1, p_prime = 2, q = 0, q_prime = 0, r = 1, r_prime = 3 }}
-{body}
-[initial]
-linear_impulse = {linear}
-angular_impulse = {angular}
-[time]
-end = {end}
-samples = 3
-"""
+CLEBSCH = "clebsch = { p = 1, p_prime = 2, q = 0, q_prime = 0, r = 1, r_prime = 3 }"
 TENSOR = '[[1, "1/10", 0], ["1/10", 2, 0], [0, 0, 3]]'
 AT_REST = "[0, 0, 0]"
 
 
 def body(inertia: str = "[1, 2, 3]", moment: str = AT_REST, omega: str = AT_REST) -> str:
-    return BODY.format(inertia=inertia, moment=moment, omega=omega)
+    acting, top = f"inertia = {inertia}\nmoment = {moment}", 'track = ["attitude"]'
+    return scene_text(acting, f"omega = {omega}", time="end = 10\nsamples = 11", top=top)
 
 
 def solid(body: str = "", linear: str = "[1, 0, 2]", angular: str = AT_REST, end: str = "1") -> str:
-    return SOLID.format(body=body, linear=linear, angular=angular, end=end)
+    start, time = (
+        f"linear_impulse = {linear}\nangular_impulse = {angular}",
+        f"end = {end}\nsamples = 3",
+    )
+    return scene_text(f"{CLEBSCH}\n{body}", start, time=time, top='track = ["centre"]')
 
 
 @pytest.mark.parametrize("size", ["1e-40", "1e-100", "1e-160", "1e-300"])

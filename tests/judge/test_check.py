@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import scene_text
 from builders.trajectories import (
     MATRIX,
     VECTORS,
@@ -451,10 +452,7 @@ def test_command_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
 def test_scene_that_the_rung_cannot_hold_is_refused(tmp_path: Path) -> None:
     """A body whose numbers overflow float32 is a refused row, as in a run."""
     scene = tmp_path / "huge.toml"
-    scene.write_text(
-        'title = "Huge"\nmodel = "euler"\n[body]\ninertia = [1e60, 2e60, 2.5e60]\n'
-        "[initial]\nomega = [1, 2, 3]\n[time]\nend = 1\nsamples = 2\n"
-    )
+    scene.write_text(scene_text("inertia = [1e60, 2e60, 2.5e60]"))
     file = write_csv(tmp_path / "mine.csv", {"t": [0.0], "w1": [1.0], "w2": [2.0], "w3": [3.0]})
     (verdict,) = file_judgement(file, str(scene), rung="f32").verdicts
     assert verdict.verdict is Status.REFUSED

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.first_order import engine, explicit
+from builders.scenes import scene_text
 from builders.trajectories import (
     MATRIX,
     QUATERNION,
@@ -209,10 +210,8 @@ def test_what_the_motion_cannot_tell_is_ambiguous_and_never_guessed(
 ) -> None:
     """Columns of one size have other signs: nobody can say which of them is which axis."""
     scene = tmp_path / "equal.toml"
-    scene.write_text(
-        'title = "Three equal components"\nmodel = "euler"\n[body]\ninertia = [2, 2, 2]\n'
-        "[initial]\nomega = [0.5, 0.5, 0.5]\n[time]\nend = 10\nsamples = 11\n"
-    )
+    equal = ("inertia = [2, 2, 2]", "omega = [0.5, 0.5, 0.5]")
+    scene.write_text(scene_text(*equal, time="end = 10\nsamples = 11"))
     spoiled = {
         "t": list(range(11)),
         **{n: [v] * 11 for n, v in zip(OMEGA, (-0.5, -0.5, 0.5), strict=True)},
@@ -279,10 +278,10 @@ def test_axes_of_omega_alone_are_no_convention_beside_an_attitude(tmp_path: Path
     assert finding.words.endswith("other axes: axis 1 is w3, axis 2 is w1, axis 3 is w2")
 
 
-SYMMETRIC = (
-    'title = "Symmetric"\nmodel = "euler"\ntrack = ["omega", "attitude"]\n[body]\n'
-    "inertia = [1.3, 1.3, 0.7]\n[initial]\nomega = [0.5, 0.2, 1.5]\nattitude = [1, 2, -1, 3]\n"
-    "[time]\nend = 20\nsamples = 21\n"
+SYMMETRIC = scene_text(
+    *("inertia = [1.3, 1.3, 0.7]", "omega = [0.5, 0.2, 1.5]\nattitude = [1, 2, -1, 3]"),
+    time="end = 20\nsamples = 21",
+    top='track = ["attitude"]',
 )
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.integrators import step
+from builders.scenes import read_scene, scene_text
 from builders.trajectories import QUATERNION, VECTORS, write_csv
 from builders.turns import by_turns
 from builders.written_loads import End, Evaluated, end_of
@@ -34,22 +35,6 @@ from taylor_verify.scenes.scene import Scene
 
 pytestmark = pytest.mark.usefixtures("without_causes")
 OMEGA = VECTORS["omega"]
-SATELLITE = """
-title = "A satellite with a sampled controller"
-model = "euler"
-track = ["attitude", {track}]
-[body]
-inertia = [1.25, 0.875, 1.5]
-{body}
-[states]
-{states}
-[initial]
-omega = [0.25, -0.5, 0.375]
-attitude = [0.5, 0.625, -0.375, 0.5]
-[time]
-end = 1
-samples = 2
-"""
 SAMPLED = 'moment = ["m1 - i1/16", "m2", "-w3/8"]'
 INTEGRAL = 'i = { start = [0, 0], rate = ["q1 - i1/64", "q2 - i2/64"] }'
 LAW = '["-0.75*q1 - w1/2", "clip(-0.75*q2 - w2/2, -0.125, 0.125)"]'
@@ -60,8 +45,12 @@ ROWS = tuple(Fraction(k, 2) for k in range(3))
 
 def satellite(states: str, body: str = SAMPLED, track: Sequence[str] = ("m", "i")) -> Scene:
     """The satellite with rows at ROWS."""
-    names = ", ".join(f'"{name}"' for name in track)
-    scene = read(SATELLITE.format(states=states, body=body, track=names), "satellite")
+    scene = read_scene(
+        f"inertia = [1.25, 0.875, 1.5]\n{body}",
+        "omega = [0.25, -0.5, 0.375]\nattitude = [0.5, 0.625, -0.375, 0.5]",
+        f"[states]\n{states}",
+        top=f"track = {['attitude', *track]}",
+    )
     return replace(scene, clock=Clock(Fraction(0), ROWS))
 
 
@@ -264,30 +253,22 @@ def test_own_states_are_explained() -> None:
 # Rows of a file on the start and on instants of held states, however their times are written.
 
 
-COUNTER = """
-title = "A body that a counter spins up"
-model = "euler"
-track = ["k"]
-[body]
-inertia = [1, 1, 1]
-moment = ["k/100", 0, 0]
-[states]
-k = {{ every = "{every}", start = 0, value = "k + 1" }}
-[initial]
-omega = [0, 0, 1]
-[time]
-start = "{start}"
-end = "{end}"
-samples = {samples}
-"""
 TENTH = Fraction(1, 10)
 
 
-def counter(start: Fraction, every: Fraction = TENTH, count: int = 31) -> Scene:
+def counting(start: Fraction | int, every: Fraction = TENTH, count: int = 31) -> str:
     """A scene whose samples are its instants: k counts those that are over, and turns w1."""
-    end = start + (count - 1) * every
-    text = COUNTER.format(start=start, every=every, end=end, samples=count)
-    return read(text, "counter")
+    return scene_text(
+        'inertia = [1, 1, 1]\nmoment = ["k/100", 0, 0]',
+        "omega = [0, 0, 1]",
+        f'[states]\nk = {{ every = "{every}", start = 0, value = "k + 1" }}',
+        f'start = "{start}"\nend = "{start + (count - 1) * every}"\nsamples = {count}',
+        'track = ["k"]',
+    )
+
+
+def counter(*given: Any) -> Scene:
+    return read(counting(*given), "counter")
 
 
 def write_counts(path: Path, times: list[str]) -> str:
@@ -370,8 +351,7 @@ def test_a_row_at_the_rounded_start_is_the_start(
     """A single row at the start is no trajectory, which `complete` says, and is compared with the start."""
     scene, file = tmp_path / "scene.toml", tmp_path / "run.csv"
     third = Fraction(1, 3)
-    end = third + 3
-    scene.write_text(COUNTER.format(start=third, every=TENTH, end=end, samples=31))
+    scene.write_text(counting(third))
     write_counts(file, [nearest(third, 0)])
     assert main(["check", str(file), "--scene", str(scene)]) == 3
     text = " ".join(capsys.readouterr().out.split())
@@ -387,7 +367,7 @@ def test_the_printed_times_are_those_of_the_scene_rounded_once(
 ) -> None:
     """The double nearest to -1 + 7/10 is -0.3, and no sum of doubles."""
     scene = tmp_path / "scene.toml"
-    scene.write_text(COUNTER.format(start=-1, every=TENTH, end=2, samples=31))
+    scene.write_text(counting(-1))
     assert main(["question", str(scene), "--csv"]) == 0
     _, *rows = capsys.readouterr().out.split()
     assert [row.partition(",")[0] for row in rows][6:9] == ["-0.4", "-0.3", "-0.2"]

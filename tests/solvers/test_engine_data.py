@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 from builders.acted import acted
 from builders.engine import ENGINE
+from builders.scenes import read_scene
 
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.run import run
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines import python
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside, solve_together
@@ -116,17 +117,11 @@ def solve(body, settings):
 
 answer(solve)
 """
-NO_SOLID = """\
-title = "no solid"
-model = "euler"
-[body]
-inertia = [1, 2, {largest}]
-[initial]
-omega = [{first}, 1, 1]
-[time]
-end = 1
-samples = 2
-"""
+
+
+def body(largest: int = 3, first: int = 1) -> Scene:
+    """A rigid body that is no solid where its largest moment is beyond the sum of the others."""
+    return read_scene(f"inertia = [1, 2, {largest}]", f"omega = [{first}, 1, 1]")
 
 
 def twin(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch, text: str = TWIN) -> Outside:
@@ -218,7 +213,7 @@ def test_an_engine_that_ends_on_moments_of_no_solid_has_not_failed(
 ) -> None:
     """It cannot represent the body; the same end on moments that a solid has is a failure."""
     engine = twin(tmp_path, "", monkeypatch, STRICT)
-    judgement = run(read(NO_SOLID.format(largest=largest, first=1), "no solid"), engine, "f64")
+    judgement = run(body(largest), engine, "f64")
     assert {str(v.verdict) for v in judgement.verdicts} == {verdict}
     assert words in str(judgement.verdicts[0].reason)
 
@@ -230,11 +225,7 @@ def test_an_engine_leaves_nothing_in_the_folder_of_the_user(
     here = tmp_path / "here"
     here.mkdir()
     monkeypatch.chdir(here)
-    run(
-        read(NO_SOLID.format(largest=3, first=1), "a solid"),
-        twin(tmp_path, "", monkeypatch, STRICT),
-        "f64",
-    )
+    run(body(), twin(tmp_path, "", monkeypatch, STRICT), "f64")
     assert list(here.iterdir()) == []
 
 
@@ -246,8 +237,7 @@ def test_one_process_answers_many_questions(
     asked = []
     for first, step in ((1, "0.5"), (2, "0.3"), (3, "1.0"), (-4, "0.5"), (5, "0.5"), (6, "0.5")):
         solver = replace(engine, settings=(("step", step),))
-        scene = read(NO_SOLID.format(largest=3, first=first), "a solid")
-        asked.append((solver, solver.problem(scene, rung("f64"))))
+        asked.append((solver, solver.problem(body(first=first), rung("f64"))))
     trajectories = solve_together(asked)
     assert [answer.outcome for answer in trajectories] == [
         *(Outcome.FINISHED, Outcome.UNSUITED, Outcome.FINISHED),

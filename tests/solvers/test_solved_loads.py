@@ -10,6 +10,7 @@ from itertools import product
 import numpy as np
 import pytest
 from builders.integrators import step
+from builders.scenes import read_scene
 from builders.turns import by_turns
 from builders.written_loads import euler, kirchhoff
 from mpmath import mp, mpf
@@ -17,7 +18,6 @@ from mpmath import mp, mpf
 from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
-from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.engines.engine import Outside
@@ -130,27 +130,20 @@ def test_a_splitting_with_kicks_has_order_two(scene: str) -> None:
     assert 3.8 < errors[0] / errors[1] < 4.2
 
 
-# A body that turns about one axis alone.
-SWING = """
-title = "A swing about one axis"
-model = "euler"
-[body]
-inertia = [2, 1, 1]
-moment = ["MOMENT", 0, 0]
-[initial]
-omega = ["1/3", 0, 0]
-[time]
-end = 2
-samples = 2
-"""
 LENGTHS = {
     "a root of a square": euler(("-sqrt((w1 + w2)^2)*w1", "cos(3*t)", "0"), "9/4"),
     "a root of parts": euler(("-sqrt(3*(w1 - w2)^2)/5", "-(w3^2)^(3/2)", "(w2^4)^(1/2)"), "9/4"),
 }
 
 
+def about_one_axis(moment: str) -> Scene:
+    """A body that turns about one axis alone."""
+    body = f'inertia = [2, 1, 1]\nmoment = ["{moment}", 0, 0]'
+    return read_scene(body, 'omega = ["1/3", 0, 0]', time="end = 2\nsamples = 2")
+
+
 def swing(moment: str) -> Problem:
-    return pose(read(SWING.replace("MOMENT", moment), "swing"), rung("f64"))
+    return pose(about_one_axis(moment), rung("f64"))
 
 
 @pytest.mark.parametrize(
@@ -177,10 +170,8 @@ def test_a_length_on_an_axis_is_a_kink(length: str) -> None:
 REFUSED = {
     "a norm at rest": euler(("-norm(w1 - 1/3, w2 + 1/2)*w1", "0", "0"), "3/4"),
     "a product of squares": euler(("-sqrt(w1^2*w2^2)", "2", "0"), "9/4"),
-    "a sine by its cosine": read(SWING.replace("MOMENT", "sqrt(1 - cos(t - 1)^2) - 1/2"), "swing"),
-    "on an oblique line": read(
-        SWING.replace("MOMENT", "-cos(t) - norm(w1 - 1/20, 2*w1 - 1/10)*w1"), "swing"
-    ),
+    "a sine by its cosine": about_one_axis("sqrt(1 - cos(t - 1)^2) - 1/2"),
+    "on an oblique line": about_one_axis("-cos(t) - norm(w1 - 1/20, 2*w1 - 1/10)*w1"),
 }
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.integrators import step
+from builders.scenes import scene_text
 from mpmath import mp, mpf
 
 from taylor_verify.models.frame import rotation
@@ -21,41 +22,22 @@ from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.solver import columns
 from taylor_verify.solvers.trajectory import Outcome
 
-WHEELS = """
-title = "Wheels of their own"
-model = "euler"
-track = ["attitude", "h"]
-[body]
-inertia = [[1.2, 0.1, 0], [0.1, 0.9, 0], [0, 0, 1.6]]
-rotor = ROTOR
-[states]
-h = { start = [0.1, 0, -0.05], rate = RATE }
-[initial]
-omega = [0.3, -0.5, 0.4]
-attitude = [0.5, 0.6, -0.4, 0.45]
-[time]
-start = "1/2"
-end = END
-samples = 8
-"""
+WHEELS = scene_text(
+    "inertia = [[1.2, 0.1, 0], [0.1, 0.9, 0], [0, 0, 1.6]]\nrotor = ROTOR",
+    "omega = [0.3, -0.5, 0.4]\nattitude = [0.5, 0.6, -0.4, 0.45]",
+    "[states]\nh = { start = [0.1, 0, -0.05], rate = RATE }",
+    'start = "1/2"\nend = END\nsamples = 8',
+    'track = ["attitude", "h"]',
+)
 # About one axis w' = m, so that all values are rational at rational times.
-SAMPLED = """
-title = "A held moment about one axis"
-model = "euler"
-track = ["m", "d", "n"]
-[body]
-inertia = [1, 1, 1]
-moment = ["d", 0, 0]
-[states]
+HELD = """[states]
 m = { every = "1/4", value = "LAW" }
 d = { every = "1/4", offset = "1/8", start = "1/16", value = "m" }
-n = { every = "1/2", offset = "1/2", start = 0, value = "n + 1" }
-[initial]
-omega = ["3/2", 0, 0]
-[time]
-end = 2
-samples = 17
-"""
+n = { every = "1/2", offset = "1/2", start = 0, value = "n + 1" }"""
+SAMPLED = scene_text(
+    'inertia = [1, 1, 1]\nmoment = ["d", 0, 0]',
+    *('omega = ["3/2", 0, 0]', HELD, "end = 2\nsamples = 17", 'track = ["m", "d", "n"]'),
+)
 LAWS = {
     "-w1/2": lambda w, m: -w / 2,
     "-sign(w1 - 1/2)/4": lambda w, m: -Fraction((w > Fraction(1, 2)) - (w < Fraction(1, 2)), 4),
