@@ -267,8 +267,8 @@ def counting(start: Fraction | int, every: Fraction = TENTH, count: int = 31) ->
     )
 
 
-def counter(*given: Any) -> Scene:
-    return read(counting(*given), "counter")
+def counter(*given: Any, **more: Any) -> Scene:
+    return read(counting(*given, **more), "counter")
 
 
 def write_counts(path: Path, times: list[str]) -> str:
