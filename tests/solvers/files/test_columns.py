@@ -12,8 +12,6 @@ from time import process_time
 import pytest
 from builders.trajectories import MATRIX, exact_columns, file_judgement, write_csv
 from builders.turns import by_turns
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from mpmath import mp
 
 import taylor_verify
@@ -157,25 +155,6 @@ def test_rows_are_a_sequence() -> None:
 
 
 # Files are judged alike.
-
-
-@settings(max_examples=40)
-@given(st.data())
-def test_any_usual_names_in_any_order_are_the_same_file(data: st.DataObject) -> None:
-    """Spellings drawn for each group, in any order: times and numbers are those of the plain file."""
-    plain: dict[str, Sequence[str]] = {"t": ["0", "1"]}
-    names: dict[str, str] = {}
-    of_usage = (s for s in SPELLINGS if not (s.doubt or s.whose or s.turn))
-    clear = [s for s in of_usage if not (s.is_whole or s.unless)]
-    for group in ("time", "omega", "attitude", "centre"):
-        spelling = data.draw(st.sampled_from([s for s in clear if s.group == group]))
-        for ours, key in zip(GROUPS[group], spelling.keys, strict=True):
-            names[ours] = key
-            plain.setdefault(ours, [str(len(plain)), str(2 * len(plain))])
-    order = data.draw(st.permutations(list(plain)))
-    expected = from_columns([Column(name, values) for name, values in plain.items()], "mine")
-    table = from_columns([Column(names[name], plain[name]) for name in order], "mine")
-    assert (table.times, table.groups) == (expected.times, expected.groups)
 
 
 def test_verdicts_are_those_of_the_plain_file(tmp_path: Path) -> None:

@@ -118,9 +118,3 @@ def test_every_entry_of_the_table_has_a_source_and_a_file_that_shows_it() -> Non
             all((s.whose, s.keys, k) in shown for k in range(len(s.keys)))
             for s in spellings_of(entry)
         ), entry["names"]
-
-
-def test_programs_are_at_least_twelve_and_files_forty() -> None:
-    """The measure of this table."""
-    assert len({entry["program"] for entry in INDEX} - {"anybody"}) >= 12
-    assert len(INDEX) >= 40

@@ -294,12 +294,6 @@ def test_a_column_that_is_asked_for_comes_before_one_of_our_name(
     np.testing.assert_array_equal(groups["m"].doubles(), expected)
 
 
-def test_a_name_that_is_asked_for_twice_is_a_fault(tmp_path: Path) -> None:
-    file = csv(tmp_path, (*NAMES[:8], "u", "v", "h"))
-    with pytest.raises(Refused, match="expected every name once, got m1 again"):
-        read(file, (("m1", "u"), ("m1", "v"), ("m2", "v")), acted())
-
-
 def test_a_part_of_a_vector_is_a_fault(tmp_path: Path) -> None:
     with pytest.raises(Refused, match="expected the columns m1 m2, got no m2"):
         read(csv(tmp_path, NAMES[:9]), (), acted())
