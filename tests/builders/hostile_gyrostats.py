@@ -38,6 +38,10 @@ def _tiny(random: Random) -> Fraction:
     return _size(random, -60, -1)
 
 
+def _perhaps_tiny(random: Random) -> Fraction:
+    return random.choice((Fraction(0), _tiny(random)))
+
+
 def _some(entries: list[int]) -> list[int]:
     """The entries, or a unit vector where all are zero."""
     return entries if any(entries) else [1, *entries[1:]]
@@ -84,27 +88,16 @@ def _beside(free: FreeGyrostat, random: Random) -> FreeGyrostat:
 # Kinds
 
 
-def _plain(random: Random) -> FreeGyrostat:
-    return FreeGyrostat(_moments(random), _full(random), _full(random))
+def _any(random: Random) -> FreeGyrostat:
+    rotor, omega = (random.choice((_full, _vector))(random) for _ in range(2))
+    return FreeGyrostat(_moments(random), rotor, omega)
 
 
-def _sparse(random: Random) -> FreeGyrostat:
-    return FreeGyrostat(_moments(random), _vector(random), _vector(random))
-
-
-def _strong(random: Random) -> FreeGyrostat:
-    return _with_wheels(random, 1, 30)
-
-
-def _weak(random: Random) -> FreeGyrostat:
-    return _with_wheels(random, -30, -1)
-
-
-def _with_wheels(random: Random, lowest: int, highest: int) -> FreeGyrostat:
-    """Wheels of 10^lowest to 10^highest of the momentum of the body."""
+def _with_wheels(random: Random) -> FreeGyrostat:
+    """Wheels of 10^-30 to 10^30 of the momentum of the body."""
     inertia, omega = _moments(random), _vector(random)
     own = max(map(abs, tensors.apply(inertia, omega)))
-    rotor = tensors.scaled(own * _size(random, lowest, highest) / 20, _vector(random))
+    rotor = tensors.scaled(own * _size(random, -30, 30) / 20, _vector(random))
     return FreeGyrostat(inertia, rotor, omega)
 
 
@@ -127,54 +120,30 @@ def _part(v: Vector, k: int) -> Vector:
     return tensors.scaled(v[k], _axis(k))
 
 
-def _two_equal(random: Random, apart: Fraction = Fraction(0)) -> FreeGyrostat:
-    """Two moments equal, or ``apart``, with the wheels along the third's axis, across it or oblique."""
+def _two_equal(random: Random) -> FreeGyrostat:
+    """Two moments equal or nearly so, with wheels along the third's axis, nearly so, across or oblique."""
     a, c = (Fraction(n) for n in random.sample(range(1, 40), 2))
     axis = random.randrange(3)
     moments = [a, a, a]
-    moments[axis], moments[axis - 1] = c, a * (1 + apart)
+    moments[axis], moments[axis - 1] = c, a * (1 + _perhaps_tiny(random))
     rotor = _full(random)
     along = _part(rotor, axis)
-    rotor = random.choice((rotor, along, tensors.minus(rotor, along)))
-    return FreeGyrostat(tensors.diagonal(tuple(moments)), rotor, _vector(random))
-
-
-def _nearly_two_equal(random: Random) -> FreeGyrostat:
-    return _two_equal(random, _tiny(random))
-
-
-def _along_equal_axis(random: Random) -> FreeGyrostat:
-    """Two equal moments, and wheels all but along the axis of the third."""
-    a, c = (Fraction(n) for n in random.sample(range(1, 40), 2))
-    moments = [a, a, a]
-    axis = random.randrange(3)
-    moments[axis] = c
-    across = tensors.scaled(_tiny(random), _full(random))
-    rotor = tensors.plus(tensors.scaled(Fraction(random.randint(-40, 40)), _axis(axis)), across)
+    across = tensors.minus(rotor, along)
+    nearly = tensors.plus(along, tensors.scaled(_tiny(random), across))
+    rotor = random.choice((rotor, along, nearly, across))
     return FreeGyrostat(tensors.diagonal(tuple(moments)), rotor, _vector(random))
 
 
 def _three_equal(random: Random) -> FreeGyrostat:
-    size = Fraction(random.randint(1, 99), 7)
-    return FreeGyrostat(tensors.diagonal((size,) * 3), _vector(random), _vector(random))
-
-
-def _nearly_three_equal(random: Random) -> FreeGyrostat:
-    moments = tuple(1 + _tiny(random) * random.randint(0, 9) for _ in range(3))
-    return FreeGyrostat(tensors.diagonal(moments), _full(random), _full(random))
+    """Three moments equal, or all but so."""
+    moments = tuple(1 + _perhaps_tiny(random) * random.randint(0, 9) for _ in range(3))
+    return FreeGyrostat(tensors.diagonal(moments), _vector(random), _vector(random))
 
 
 def _steady(random: Random) -> FreeGyrostat:
     inertia, omega = _moments(random), _vector(random)
     whole = tensors.scaled(Fraction(random.randint(-40, 40), 3), omega)
     return FreeGyrostat(inertia, tensors.minus(whole, tensors.apply(inertia, omega)), omega)
-
-
-def _cusp(random: Random) -> FreeGyrostat:
-    free, pace = MOTIONS["cusp"], _size(random, -20, 20)
-    return FreeGyrostat(
-        free.inertia, tensors.scaled(pace, free.rotor), tensors.scaled(pace, free.omega)
-    )
 
 
 def _homoclinic(random: Random) -> FreeGyrostat:
@@ -189,9 +158,9 @@ def _circle(random: Random) -> FreeGyrostat:
 
 def _euler_separatrix(random: Random) -> FreeGyrostat:
     """Euler's separatrix, with wheels of 1e-1 to 1e-60 or none."""
-    spin = near_separatrix(random.choice((Fraction(0), _tiny(random))))
-    size = random.choice((Fraction(0), _tiny(random)))
-    return FreeGyrostat(spin.inertia, tensors.scaled(size, _vector(random)), spin.omega)
+    spin = near_separatrix(_perhaps_tiny(random))
+    rotor = tensors.scaled(_perhaps_tiny(random), _vector(random))
+    return FreeGyrostat(spin.inertia, rotor, spin.omega)
 
 
 def _middle_axis(random: Random) -> FreeGyrostat:
@@ -211,7 +180,7 @@ def _nearly_at_rest(random: Random) -> FreeGyrostat:
 def _hardly_any_momentum(random: Random) -> FreeGyrostat:
     """The wheels all but cancel the momentum of the body: |H| is 1e-1 to 1e-60 of it, or 0."""
     inertia, omega = _moments(random), _vector(random)
-    left = tensors.scaled(random.choice((Fraction(0), _tiny(random))), _vector(random))
+    left = tensors.scaled(_perhaps_tiny(random), _vector(random))
     return FreeGyrostat(inertia, tensors.minus(left, tensors.apply(inertia, omega)), omega)
 
 
@@ -237,29 +206,22 @@ def _through_a_frame(random: Random) -> FreeGyrostat:
     inertia, omega = _moments(random), _full(random)
     axis = random.choice(random.choice(FRAMES)).c
     whole = tensors.scaled(Fraction(random.randint(1, 30)), axis)
-    whole = tensors.plus(
-        whole, tensors.scaled(random.choice((Fraction(0), _tiny(random))), _full(random))
-    )
+    whole = tensors.plus(whole, tensors.scaled(_perhaps_tiny(random), _full(random)))
     return FreeGyrostat(inertia, tensors.minus(whole, tensors.apply(inertia, omega)), omega)
 
 
 KINDS: Final[dict[str, Kind]] = {
-    "plain": _plain,
-    "sparse": _sparse,
-    "strong wheels": _strong,
-    "weak wheels": _weak,
+    "any": _any,
+    "wheels of any strength": _with_wheels,
     "wheels along an axis": _along_axis,
     "wheels in a plane": _in_plane,
     "two equal moments": _two_equal,
-    "nearly two equal moments": _nearly_two_equal,
-    "wheels nearly along the axis of two equal moments": _along_equal_axis,
     "three equal moments": _three_equal,
-    "nearly three equal moments": _nearly_three_equal,
     "steady": _steady,
     "nearly steady": lambda random: _beside(_steady(random), random),
     "double point": _homoclinic,
     "beside a double point": lambda random: _beside(_homoclinic(random), random),
-    "cusp": _cusp,
+    "cusp": lambda _: MOTIONS["cusp"],
     "beside a cusp": lambda random: _beside(MOTIONS["cusp"], random),
     "circle": _circle,
     "beside a circle": lambda random: _beside(_circle(random), random),

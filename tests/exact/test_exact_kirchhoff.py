@@ -99,7 +99,7 @@ def is_taylors(asked: Scene, route: str, times: Sequence[Fraction]) -> bool:
 
 @of_each_regime
 def test_agrees_with_taylor(name: str) -> None:
-    """Regime, impulses, attitude and centre, both ways in time and beside the start, by every closed route."""
+    """Regime, impulses, attitude and centre, both ways in time and beside the start, on closed routes."""
     asked, times = scene(name), vector(1, "-2/3", 0, "1/1000000007")
     for route in closed_routes(asked):
         assert solution(asked, route).regime == MOTIONS[name][2]
