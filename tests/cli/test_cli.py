@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.processes import PATIENCE, interruptible, wait_until
+from builders.processes import PATIENCE, interruptible, printed_by, wait_until
 from builders.programs import is_alive
 from builders.scenes import LISTED_INSTANTS, scene_file
 from builders.turns import by_turns
@@ -104,14 +104,7 @@ def test_help_imports_nothing_heavy() -> None:
         "print(sorted({'numpy', 'mpmath', 'heyoka', 'rich', 'flint', 'multiprocessing'}"
         " & set(sys.modules)))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", script],
-        env=environment(),
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.splitlines()[-1] == "[]"
+    assert printed_by(script).splitlines()[-1] == "[]"
 
 
 # run

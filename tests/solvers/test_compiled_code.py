@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import locale
-import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import heyoka as hy
 import pytest
+from builders.processes import printed_by
 
-import taylor_verify
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import rung
@@ -52,16 +50,7 @@ def german(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_decimal_comma_reaches_no_code(german: Path) -> None:
     """heyoka is imported, and its code compiled, with decimal points; the comma comes back."""
-    own = {"LOCPATH": str(german)}
-    package = str(Path(taylor_verify.__file__).parents[1])
-    done = subprocess.run(
-        [sys.executable, "-c", COMMA],
-        env={**os.environ, **own, "PYTHONPATH": package},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert (done.returncode, done.stdout) == (0, "True ,\n"), done.stderr
+    assert printed_by(COMMA, LOCPATH=str(german)) == "True ,\n"
 
 
 def test_blocks_with_decimal_points_may_overlap(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import re
-import subprocess
-import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from math import nan
@@ -16,6 +14,7 @@ from typing import Any
 from unittest.mock import patch
 
 import pytest
+from builders.processes import printed_by
 from builders.verdicts import (
     MIXED,
     NAN,
@@ -236,10 +235,7 @@ def test_publishing_imports_no_physics(report: Path) -> None:
         "from taylor_verify_reports.studies.published_report import publish; publish(sys.argv[1]);"
         "print(*set(sys.modules) - light)"
     )
-    ran = subprocess.run(
-        [sys.executable, "-c", program, str(report)], capture_output=True, text=True, check=True
-    )
-    loaded = set(ran.stdout.split())
+    loaded = set(printed_by(program, str(report)).split())
     assert "taylor_verify.report.published_tables" in loaded
     assert loaded.isdisjoint({"heyoka", "mpmath", "flint", "numpy", "gmpy2"})
     own = {name for name in loaded if name.startswith("taylor_verify")}

@@ -6,7 +6,6 @@ import bz2
 import os
 import resource
 import struct
-import subprocess
 import sys
 import zipfile
 from collections.abc import Callable
@@ -18,12 +17,12 @@ import h5py
 import numpy as np
 import pyarrow as pa
 import pytest
+from builders.processes import printed_by
 from builders.recordings import IMU
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
 from pyarrow import parquet
 
-import taylor_verify
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.file import read
@@ -119,15 +118,7 @@ def test_too_many_rows_are_refused_in_bounded_memory(
     """Millions of rows are refused before they are made numbers, in every format."""
     file = tmp_path / name
     write(file)
-    place = str(Path(taylor_verify.__file__).parents[1])
-    ended = subprocess.run(
-        [sys.executable, "-c", READ, str(file)],
-        env={**os.environ, "PYTHONPATH": place},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    refusal, megabytes = ended.stdout.splitlines()
+    refusal, megabytes = printed_by(READ, str(file)).splitlines()
     assert refusal.startswith(f"expected at most {ROWS.most} rows, got ")
     assert refusal.endswith(f"({ROWS.because})")
     assert int(megabytes) <= MOST_MEGABYTES
@@ -419,8 +410,7 @@ def test_a_page_that_is_larger_than_the_footer_says_is_refused(tmp_path: Path) -
     file = tmp_path / "liar.parquet"
     liar(file)
     call = f"import test_file_limits as t; t.refused_by_memory(t.Path({str(file)!r}))"
-    environment = {**os.environ, "PYTHONPATH": paths}
-    subprocess.run([sys.executable, "-c", call], env=environment, check=True)
+    printed_by(call, PYTHONPATH=paths)
     assert file.stat().st_size < 5000
 
 

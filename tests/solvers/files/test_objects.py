@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cache
@@ -13,6 +12,7 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 import xarray as xr
+from builders.processes import printed_by
 from builders.trajectories import MATRIX, QUATERNION, VECTORS, exact_columns, rows_of
 from scipy.optimize import OptimizeResult
 from scipy.spatial.transform import Rotation
@@ -302,8 +302,6 @@ def test_what_is_no_trajectory_is_refused(answer: Any) -> None:
 
 def test_no_library_is_imported_for_it() -> None:
     """A dict is judged without pandas, xarray or SciPy in the process."""
-    import subprocess
-
     code = (
         "import sys\n"
         "from taylor_verify.scenes.reading.reader import load\n"
@@ -311,6 +309,5 @@ def test_no_library_is_imported_for_it() -> None:
         "trajectory({'t': [0], 'omega': [[1, 2, 3]]}, load('euler/generic'))\n"
         "print([n for n in ('pandas', 'xarray', 'scipy') if n in sys.modules])\n"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    assert printed_by(code) == "[]\n"
     assert COLUMNS["omega"] == OMEGA
