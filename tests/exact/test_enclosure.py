@@ -8,24 +8,36 @@ from typing import Any
 
 import pytest
 from builders.boxes import CASES, TRUTHS, WIDE, corners, enclosed, is_contained, with_few_orders
-from builders.scenes import QUATERNION, one_instant, vector
+from builders.numbers import largest
+from builders.scenes import (
+    MOMENT,
+    QUATERNION,
+    TENSOR,
+    one_instant,
+    sample_scene,
+    vector,
+)
 from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
+from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import box, step, tube, walk
+from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.node_bounds import Bounds
+from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Stepper
-from taylor_verify.exact.enclosure.system import column
+from taylor_verify.exact.enclosure.system import System, column
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.exact.taylor import TaylorSolution, arcs
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.rotation import rotation_matrix
+from taylor_verify.numbers.rotation import conjugate, product, rotation_matrix, rotation_rows
 from taylor_verify.numbers.tensors import diagonal
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.bodies import Clebsch, RigidBody
+from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
 
 TRIAXIAL = RigidBody(diagonal(vector(1, 2, 3)))
 
@@ -182,3 +194,118 @@ def test_an_axis_for_each_error_keeps_what_a_frame_wraps_away(
     monkeypatch.setattr(box, "_MOST_AXES", 1)
     monkeypatch.setattr(box, "_LONGEST", 0)
     assert usual < radius() / 10
+
+
+# Frames and series
+
+P, Q = vector(1, 2, -3, 4), vector("0.5", -1, 2, "0.25")
+
+
+def test_a_quaternion_turns_as_its_matrix_does() -> None:
+    """R(p) v is p v p*, and R(p q) = R(p) R(q); the rotation of p is R(p)/|p|^2."""
+    for k in range(3):
+        unit = [Fraction(int(i == k)) for i in range(-1, 3)]
+        turned = product(product(P, unit), conjugate(P))
+        assert turned == [0, *(row[k] for row in rotation_rows(P))]
+    both = tensors.product(exactly(rotation_rows(P)), exactly(rotation_rows(Q)))
+    assert exactly(rotation_rows(product(P, Q))) == both
+    square = tensors.dot(P, P)
+    assert exactly([[square * e for e in row] for row in rotation_matrix(P)]) == exactly(
+        rotation_rows(P)
+    )
+
+
+def exactly(rows: list[list[Fraction]]) -> tensors.Matrix:
+    return tuple(map(tuple, rows))
+
+
+def series(system: System, step: Fraction, order: int) -> list[list[arb]]:
+    """The coefficients of the state from its start, at the ambient precision."""
+    return Series(
+        system.pieces(Fraction(0), True).tape, balls(system.start), Fraction(0), step, order
+    ).rows
+
+
+def test_a_series_loses_no_bit_of_its_sum() -> None:
+    """Coefficients that keep fewer bits the smaller they are leave the sum as sharp as it was."""
+    scene = load("kirchhoff/general-body")
+    with ctx.workprec(140):
+        run = Course.of(posed(scene), balls(posed(scene).start), 140, 10_000)
+        (row,) = (row for _, row in run.rows([Fraction(1, 8)]))
+        widest, largest = max(z.rad() for z in row.state), max(abs(z).mid() for z in row.state)
+        assert widest <= largest * arb(2) ** -130
+        order = run.stepper.order
+        rows = series(posed(scene), Fraction(1, 8), order)
+    with ctx.workprec(400):
+        sharp = series(posed(scene), Fraction(1, 8), order)
+        for coarse, fine in zip(rows, sharp, strict=True):
+            assert all(a.overlaps(b) for a, b in zip(coarse, fine, strict=True))
+
+
+@pytest.mark.parametrize("name", ["kirchhoff/steady-screw", "kirchhoff/steady-spin"])
+def test_a_state_that_never_changes_takes_one_step(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However long the time and however fast a neighbour would leave: nothing is left out."""
+    steps, original = [], Stepper.step
+
+    def counted(self: Stepper, *arguments: Any) -> Any:
+        steps.append(arguments)
+        return original(self, *arguments)
+
+    monkeypatch.setattr(Stepper, "step", counted)
+    motion = TaylorSolution(bare(load(name))).motion([Fraction(10**6)], 30)
+    assert len(steps) == 1
+    assert motion.radius[0] == 0
+
+
+def bare(scene: Scene) -> Scene:
+    return replace(scene, track=frozenset())
+
+
+def test_a_body_without_spin_moves_straight() -> None:
+    """The attitude of a body at rest is that of its start, exactly known."""
+    resting = one_instant(CASES["euler"][0].body, Spin(vector(0, 0, 0)), "attitude")
+    motion = TaylorSolution(resting).motion([Fraction(50)], 30)
+    assert motion.radii["attitude"][0] == 0
+
+
+# Arcs
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [sample_scene(RigidBody(TENSOR, MOMENT), "attitude"), load("loads/heavy-top")],
+    ids=["loads apart from the attitude", "a weight"],
+)
+def test_arcs_are_motions_of_their_own(scene: Scene) -> None:
+    """Row k of arcs is the motion from the k-th state alone, after the k-th span, in its own attitude."""
+    starts = [Spin(vector(1, 0, "0.5"), QUATERNION), Spin(vector("0.2", -1, 0))]
+    spans = [Fraction(3, 2), Fraction(-1, 3)]
+    together = arcs(scene, starts, spans, 30, [Fraction(0)] * 2)
+    for k, (start, span) in enumerate(zip(starts, spans, strict=True)):
+        alone = TaylorSolution(replace(scene, initial=start)).motion([span], 30)
+        with mp.workdps(50):
+            for name in together.quantities:
+                assert largest(together[name][k] - alone[name][0]) <= mpf(10) ** -30
+
+
+@pytest.mark.parametrize("size", [Fraction(1, 2**40), Fraction(2**20)], ids=["small", "large"])
+def test_arcs_begin_at_any_size(size: Fraction) -> None:
+    """An arc has its digits also where its state is far smaller or larger than the scene's own."""
+    scene = sample_scene(RigidBody(TENSOR))
+    start = Spin(vector(size, -size, size / 2))
+    (arc,) = arcs(scene, [start], [1 / size], 30)["omega"]
+    (alone,) = TaylorSolution(replace(scene, initial=start)).motion([1 / size], 30)["omega"]
+    with mp.workdps(50):
+        assert largest(arc - alone) <= mpf(10) ** -30 * largest(alone)
+
+
+def test_a_couple_that_vanishes_for_the_body_leaves_y_exactly() -> None:
+    """With p = p' and no coupling x x U = 0 whatever x is: y = 0 stays zero, and no rounding tells."""
+    ninth = Fraction(1, 9)
+    sphere = Clebsch(ninth, ninth, Fraction(0), Fraction(0), ninth, ninth).body()
+    still = Impulse(vector(0, "25/16", "-4/7"), vector(0, 0, 0), QUATERNION, vector(1, 2, 3))
+    moving = replace(sample_scene(sphere, "attitude", "centre"), initial=still)
+    motion = TaylorSolution(moving).motion([Fraction(14000, 1107)], 30)
+    assert not any(motion["angular_impulse"].flat)

@@ -1,4 +1,4 @@
-"""The free body in balls: proven radii, against the other closed form and Taylor series.
+"""The free body: its kind, decided exactly, and its motion in balls, against mpmath and Taylor series.
 
 Bodies drawn at random are compared in test_two_routes.
 """
@@ -11,7 +11,14 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from builders.free_spins import EXTREMES, OBLIQUE, SPINS, spinning, turned
+from builders.free_spins import (
+    EXTREMES,
+    OBLIQUE,
+    SPINS,
+    near_separatrix,
+    spinning,
+    turned,
+)
 from builders.numbers import overlap
 from builders.scenes import one_instant, vector
 from builders.turns import by_turns
@@ -164,3 +171,38 @@ def test_exact_zeros_survive() -> None:
     ):
         enclosure = top_rotation(spinning(moments, omega), IDENTITY).enclose([Fraction(0)], 100)
         assert [w.is_zero() for w in enclosure["omega"][0]] == [w == 0 for w in omega]
+
+
+# The kind of a motion
+
+
+@pytest.mark.parametrize("name", SPINS)
+def test_regime_is_decided_exactly(name):
+    """Each orbit is of the kind it was built to be, whatever axes it is described in."""
+    word = name.split(",")[0]
+    assert SPINS[name].regime == word
+    assert turned(OBLIQUE, SPINS[name]).regime == word
+
+
+@pytest.mark.parametrize(
+    ("moments", "omega", "word"),
+    [
+        ((2, 2, 2), (0, 0, 0), "rest"),
+        ((2, 2, 2), (1, 0, 0), "spherical"),
+        ((2, 2, 1), (0, 0, 0), "rest"),
+        ((2, 2, 1), (3, 4, 0), "steady"),
+        ((2, 2, 1), (0, 0, 1), "steady"),
+        ((3, 2, 1), (0, 1, 0), "steady"),
+    ],
+)
+def test_the_simplest_description_wins(moments, omega, word):
+    """Rest comes before the shape of the body, and a permanent rotation before its symmetry."""
+    assert spinning(vector(*moments), vector(*omega)).regime == word
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("exponent", [20, 60, 400])
+def test_regime_beside_the_separatrix(sign, exponent):
+    """One part in 1e400 more or less of one component decides which axis is encircled."""
+    spin = near_separatrix(Fraction(sign, 10**exponent))
+    assert spin.regime == ("max-axis" if sign > 0 else "min-axis")

@@ -1,20 +1,26 @@
-"""After a billion periods the exact solution is proven to 40 digits, and is back where it began."""
+"""Closed forms of the shipped scenes: after a billion periods, and at times that are balls."""
 
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
+from builders.routes import has_route
+from builders.scenes import everything
 from builders.turns import by_turns
+from flint import arb, ctx
 from mpmath import mp, mpf
 
+from taylor_verify.exact.balls import Enclosed
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff.closed import case
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.library import EXTREMES, WORST, names
 from taylor_verify.scenes.motion import Motion
@@ -111,3 +117,44 @@ def test_a_period_wrong_in_its_45th_digit_is_noticed(name: str) -> None:
     assert once is not None
     off = once * (1 + Fraction(1, 10**45))
     assert not missed(scene, PERIODS * off) <= RETURNS
+
+
+# Times that are balls
+
+
+@cache
+def free_forms() -> list[str]:
+    """The shipped scenes without loads and wheels that have a closed form."""
+    forms = []
+    for name in names():
+        scene = load(name)
+        body = scene.body
+        if body.is_free and not body.damping and "gyrostat" not in name:
+            forms += [name] * has_route(scene, "arb")
+    return forms
+
+
+def all_that_is_closed(scene: Scene) -> Scene:
+    """The scene with all that its closed form knows."""
+    whole = everything(scene)
+    return whole if has_route(whole, "arb") else scene
+
+
+@pytest.mark.parametrize("name", free_forms())
+def test_a_wide_ball_of_time_contains_the_motion_at_its_ends(name: str) -> None:
+    """The enclosure at the ball 1/3 +- 1/1000 overlaps those at both of its ends and at its middle."""
+    inner = solution(all_that_is_closed(load(name)), "arb")
+    assert isinstance(inner, Enclosed)
+    middle, reach = Fraction(1, 3), Fraction(1, 1000)
+    with ctx.workprec(160):
+        wide = inner.enclose([ball(middle) + arb(0, ball(reach))], 160)
+        for t in (middle - reach, middle, middle + reach):
+            narrow = inner.enclose([t], 160)
+            for name, rows in narrow.items():
+                pairs = zip(flat(wide[name][0]), flat(rows[0]), strict=True)
+                assert all(one.is_finite() and one.overlaps(other) for one, other in pairs)
+
+
+def flat(row: Any) -> list[Any]:
+    """The entries of a vector or a matrix."""
+    return [entry for part in row for entry in flat(part)] if hasattr(row, "__len__") else [row]

@@ -1,16 +1,18 @@
-"""No digit is printed that its number does not have: of irrational bodies, and of tiny components."""
+"""No digit is printed that its number does not have, and the radius means one thing on every route."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import pytest
 from builders.routes import closed_routes
-from builders.scenes import one_instant, read_scene, vector
+from builders.scenes import one_instant, read_scene, text_of, vector
 from builders.turns import by_turns
 from flint import arb
 from mpmath import mp, mpf
@@ -252,3 +254,78 @@ def test_a_constant_that_cancels_decides_the_kind() -> None:
     spin = Spin(tuple(map(stand_in, (TWIN, 3 * TWIN, TWIN / 3))))
     body = RigidBody(tensors.diagonal(vector(2, 3, 6)))
     assert solution(one_instant(body, spin, "attitude")).regime == "separatrix"
+
+
+# The radius
+
+SCENES = (
+    "euler/with-attitude",
+    "euler/oblique-symmetry",
+    "kirchhoff/screw",
+)
+TIMES = ("1.25", "7")
+
+
+def rows_by(scene: str, route: str, digits: int) -> list[dict[str, Any]]:
+    asked = load(scene)
+    times = [(text, asked.clock.start + Fraction(text)) for text in TIMES]
+    rows: list[dict[str, Any]] = document(asked, solution(asked, route), times, digits)["rows"]
+    return rows
+
+
+def flat_vectors(row: dict[str, Any]) -> dict[str, list[Fraction]]:
+    """Every vector and matrix of a row, flat, as the rationals that its text says."""
+    values = {}
+    for name, value in row.items():
+        if name not in ("t", "radius"):
+            values[name] = [Fraction(text) for text in np.ravel(np.array(value))]
+    return values
+
+
+def errors(row: dict[str, Any], truth: dict[str, Any]) -> dict[str, Fraction]:
+    """The square of each vector's error by that of its norm, recomputed from the text alone."""
+    ones, others = flat_vectors(row), flat_vectors(truth)
+    assert set(ones) == set(others)
+    return {
+        name: sum((a - b) ** 2 for a, b in zip(ones[name], others[name], strict=True))
+        / sum(b * b for b in others[name])
+        for name in ones
+    }
+
+
+@pytest.mark.parametrize(("digits", "scene"), by_turns(product([3, 16], SCENES)))
+def test_printed_digits_are_within_the_radius_on_every_route(scene: str, digits: int) -> None:
+    """Against forty digits of the other routes; and printing is most of it, on all three alike."""
+    sharp = {route: rows_by(scene, route, 40) for route in ROUTES}
+    for route in ROUTES:
+        for k, row in enumerate(rows_by(scene, route, digits)):
+            radius = Fraction(row["radius"])
+            assert Fraction(5, 10**digits) < radius <= Fraction(6, 10**digits)
+            for other in ROUTES:
+                room = radius + Fraction(sharp[other][k]["radius"])
+                assert max(errors(row, sharp[other][k]).values()) <= room**2
+
+
+DIAGONALS = {"linear": [1, 1, 1], "coupling": [0, 0, 0], "angular": [1, 2, 3]}
+ENERGY = {name: np.diag(entries).tolist() for name, entries in DIAGONALS.items()}
+# An impulse that a force takes away.
+CANCELLING = text_of(
+    {"force": ["1/3", "2/3", 0], "energy": ENERGY},
+    {"linear_impulse": ["-1/7", "-2/7", 0], "angular_impulse": [0, 0, 0]},
+    *(1, 2),
+)
+
+
+@pytest.mark.parametrize("left", [Fraction(1, 10**100), Fraction(0)])
+def test_what_is_left_of_a_vector_that_cancels_is_right(tmp_path: Path, left: Fraction) -> None:
+    """x is linear in time. Of 1e-100 of it every digit is right; of nothing, zero is rows_by and said."""
+    file = tmp_path / "cancelling.toml"
+    file.write_text(CANCELLING, encoding="utf-8")
+    scene = load(str(file))
+    rows_by = document(scene, solution(scene, "taylor"), [("t", Fraction(3, 7) + 3 * left)], 30)
+    (row,) = rows_by["rows"]
+    truth = [left, 2 * left, Fraction(0)]
+    errors = [Fraction(p) - t for p, t in zip(row["linear_impulse"], truth, strict=True)]
+    assert Fraction(row["radius"]) < Fraction(1, 10**29)
+    assert sum(e * e for e in errors) <= Fraction(row["radius"]) ** 2 * sum(t * t for t in truth)
+    assert ("absolute" in row) is (left == 0)

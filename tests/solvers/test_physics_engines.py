@@ -55,7 +55,7 @@ def each_setting() -> list[str]:
     names = []
     for one in engines().values():
         about = one.script.about
-        # The vehicles of simulators are bodies of their own: test_loaded_solids.py.
+        # The vehicles of simulators are bodies of their own: test_free_body.py.
         if about.data != "tensor" or one.script.library == "vehicle":
             continue
         words = [
