@@ -11,7 +11,7 @@ from typing import Any
 import mpmath
 from mpmath import mp, mpf
 
-from builders.extrapolation import Vector, extrapolated
+from builders.integrators import Vector, extrapolated
 from taylor_verify import enclose
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.records.faults import Refused

@@ -1,7 +1,8 @@
-"""Processes of tests: an interrupt that they hear, and waiting that no loaded machine cuts short."""
+"""Processes of tests, and programs of other people: interrupts, waiting, imports."""
 
 from __future__ import annotations
 
+import ast
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Final
 
 # Seconds after which a test gives up; only a fault takes so long, however busy the machine is.
@@ -59,3 +61,26 @@ def wait_until(condition: Callable[[], object], seconds: float = PATIENCE) -> No
         if time.monotonic() > deadline:
             raise TimeoutError(f"expected the condition to hold within {seconds:g} seconds")
         time.sleep(0.01)
+
+
+# Programs
+
+
+def imported_tops(source: str) -> set[str]:
+    """The top names of all modules that a source imports."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names.add(node.module or "")
+    return {name.partition(".")[0] for name in names}
+
+
+def is_alive(pid: int | str) -> bool:
+    """Return True for a process that runs; one that has ended and waits for its parent does not."""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state not in {"Z", "X"}

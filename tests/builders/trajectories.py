@@ -1,10 +1,10 @@
-"""Trajectories as somebody else would have them in a file: exact motions rounded to float64."""
+"""Trajectories as somebody else would have them in a file, and documents that are drawn."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from mpmath import mp
 
 import taylor_verify
+from taylor_verify.draw.drawn_course import motion
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.judge.files.judgement import FileJudgement
@@ -125,3 +126,12 @@ def in_space_axes(sound: Sound) -> Columns:
     return replaced(
         sound, VECTORS["omega"], (R @ rows_of(sound, VECTORS["omega"])[:, :, None])[:, :, 0]
     )
+
+
+# Documents
+
+
+@cache
+def document(scene: str) -> dict[str, Any]:
+    """Return the motion of a scene in few rows: what tests ask of it holds of every row."""
+    return motion(load(scene), 60)

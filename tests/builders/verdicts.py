@@ -1,12 +1,15 @@
-"""Verdict rows and a record as runs leave them: a row that passes, changed where a test says so."""
+"""Verdict rows and a record as runs leave them, changed where a test says so, and their schema."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
+from jsonschema import Draft202012Validator
+
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.record import GateRecord, Record
+from taylor_verify.records.schema import schema
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -130,3 +133,14 @@ RECORD = Record(
 def by_quantity(judged: Any) -> dict[str, Verdict]:
     """The verdicts of a judgement by their quantities."""
     return {verdict.quantity: verdict for verdict in judged.verdicts}
+
+
+# The published schema
+
+SCHEMA = schema()
+
+
+def violations(document: Any) -> list[str]:
+    """The places where a document is not of the schema."""
+    errors = Draft202012Validator(SCHEMA).iter_errors(document)
+    return [f"{error.message} @ {error.json_path}" for error in errors]

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from mpmath import mp, mpf
 
-from builders.extrapolation import extrapolated
+from builders.integrators import extrapolated
 from builders.text_functions import FUNCTIONS, Sides, tabulated, value
 from taylor_verify.scenes.loads.states import Continuous, Held
 from taylor_verify.scenes.reading.reader import read

@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.processes import PATIENCE, interruptible, printed_by, wait_until
-from builders.programs import is_alive
+from builders.processes import PATIENCE, interruptible, is_alive, printed_by, wait_until
 from builders.scenes import LISTED_INSTANTS, scene_file
 from builders.turns import by_turns
 

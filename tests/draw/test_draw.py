@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.motions import document
 from builders.scenes import read_scene
-from builders.trajectories import write_csv
+from builders.trajectories import document, write_csv
 from builders.turns import by_turns
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from builders.motions import document
+from builders.trajectories import document
 from hypothesis import given
 from hypothesis import strategies as st
 

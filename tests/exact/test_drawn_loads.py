@@ -1,19 +1,25 @@
-"""Motions under drawn loads lie within their radii, by an integrator that shares nothing with them."""
+"""Motions under drawn loads by another integrator, and under others by the digits of another enclosure."""
 
 from __future__ import annotations
 
+import json
 from collections import Counter
+from collections.abc import Iterator
 from fractions import Fraction
+from pathlib import Path
 from random import Random
+from typing import Any, Final
 
 import pytest
 from builders.drawn_loads import Drawn, drawn
 from builders.written_loads import End, end_of, rotation
-from mpmath import mp, mpf
+from mpmath import mp, mpf, norm
 
+from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.reading.reader import load
 
 DIGITS = 16
 # What may be refused or given up.
@@ -92,3 +98,46 @@ def test_drawn_motions_are_within_their_radii(
     """
     reasons = answers(seed, count, *along, with_states)
     assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons
+
+
+# Digits of another enclosure
+
+FOLDER: Final = Path(__file__).parent / "laboratory"
+ANSWERS: Final[dict[str, Any]] = json.loads((FOLDER / "answers.json").read_text())
+TWENTY: Final = 20
+
+
+def vectors(row: dict[str, Any]) -> Iterator[tuple[str, list[str]]]:
+    """Each quantity of a row with its entries; own states stand beside the others."""
+    quantities = {**row, **row.get("states", {})}
+    for name, entries in quantities.items():
+        if isinstance(entries, list):
+            nested = [e if isinstance(e, list) else [e] for e in entries]
+            yield name, [text for each in nested for text in each]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ANSWERS)
+def test_twenty_digits_lie_within_their_radius_of_the_others(name: str) -> None:
+    """The radius of a row bounds the error of each vector by its norm, or its largest norm so far."""
+    scene = load(FOLDER / f"{name}.toml")
+    rows = ANSWERS[name]["rows"]
+    times = [(row["t"], Fraction(row["t"])) for row in rows]
+    printed = document(scene, solution(scene), times, TWENTY)
+    assert [row["t"] for row in printed["rows"]] == [row["t"] for row in rows]
+    largest: dict[str, Any] = {}
+    with mp.workdps(45):
+        for ours, theirs in zip(printed["rows"], rows, strict=True):
+            assert mpf(ours["radius"]) < mpf(10) ** (1 - TWENTY)
+            answered = dict(vectors(ours))
+            assert theirs.keys() - {"t", "states"} <= answered.keys()
+            for quantity, entries in vectors(theirs):
+                if quantity not in answered:
+                    continue
+                size = largest[quantity] = max(
+                    norm(list(map(mpf, entries))), largest.get(quantity, 0)
+                )
+                off = norm(
+                    [mpf(a) - mpf(b) for a, b in zip(answered[quantity], entries, strict=True)]
+                )
+                assert off <= (mpf(ours["radius"]) + mpf("1e-36")) * size

@@ -335,4 +335,4 @@ def test_a_double_root_anywhere(place: str) -> None:
         assert exact.regime in ("hyperbolic", "trigonometric", "algebraic")
         with mp.workdps(FORTY + 20):
             motion = exact.motion(times, FORTY)
-            assert apart(truth, motion) <= 2 * mpf(10) ** -DIGITS
+            assert apart(truth, motion) <= 2 * mpf(10) ** -FORTY

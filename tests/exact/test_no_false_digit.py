@@ -318,12 +318,14 @@ CANCELLING = text_of(
 
 @pytest.mark.parametrize("left", [Fraction(1, 10**100), Fraction(0)])
 def test_what_is_left_of_a_vector_that_cancels_is_right(tmp_path: Path, left: Fraction) -> None:
-    """x is linear in time. Of 1e-100 of it every digit is right; of nothing, zero is rows_by and said."""
+    """x is linear in time. Of 1e-100 of it every digit is right; of nothing, zero is printed and said."""
     file = tmp_path / "cancelling.toml"
     file.write_text(CANCELLING, encoding="utf-8")
     scene = load(str(file))
-    rows_by = document(scene, solution(scene, "taylor"), [("t", Fraction(3, 7) + 3 * left)], 30)
-    (row,) = rows_by["rows"]
+    printed_rows = document(
+        scene, solution(scene, "taylor"), [("t", Fraction(3, 7) + 3 * left)], 30
+    )
+    (row,) = printed_rows["rows"]
     truth = [left, 2 * left, Fraction(0)]
     errors = [Fraction(p) - t for p, t in zip(row["linear_impulse"], truth, strict=True)]
     assert Fraction(row["radius"]) < Fraction(1, 10**29)

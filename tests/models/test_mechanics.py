@@ -1,26 +1,37 @@
-"""Bodies by their parts: complete, of the right dimensions, and known to every room that has a table."""
+"""Bodies by their parts: complete, of the right dimensions, known to every room or taken by none."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import fields, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from random import Random
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from builders.scenes import IMPULSE, LOADED, MOMENT, OMEGA, SPIN, TENSOR
 
+import taylor_verify
+from taylor_verify.exact.quadratic_forms import Equations, exact
+from taylor_verify.exact.registry import KINDS, kind_of
+from taylor_verify.judge.causes.likely import NOT_LOOKED_FOR, with_causes
+from taylor_verify.judge.causes.material import are_known
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.letters import numbers_of
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.registry import mechanics
 from taylor_verify.models.units import Units
 from taylor_verify.numbers.precision import rung
-from taylor_verify.scenes.bodies import Body, Ellipsoid, ImmersedBody
+from taylor_verify.numbers.tensors import Vector, apply, diagonal, dot
+from taylor_verify.scenes.bodies import Body, Ellipsoid, ImmersedBody, RigidBody
+from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import State
-from taylor_verify.scenes.named_numbers import Part, Parted, Shape, Value, entrywise
+from taylor_verify.scenes.named_numbers import NUMBER, Part, Parted, Shape, Value, entrywise
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.process import protocol
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify_reports.studies.portraits.latex_equations import equations
 
 # A scene of each kind of body.
@@ -130,3 +141,113 @@ def test_other_coefficients_are_no_longer_those_of_the_ellipsoid() -> None:
     pushed = body.with_parts({"force": (Fraction(1),) * 3})
     assert pushed.ellipsoid is body.ellipsoid is not None
     assert body.with_parts({"linear": body.angular}).ellipsoid is None
+
+
+# A kind that nobody knows yet
+
+INERTIA = diagonal((Fraction(1), Fraction(2), Fraction(3)))
+
+
+@dataclass(frozen=True)
+class SprungBody(RigidBody):
+    """A dummy: a rigid body with a part that is neither energy nor load."""
+
+    spring: Vector = (Fraction(1), Fraction(0), Fraction(0))
+
+    PARTS = (*RigidBody.PARTS, Part("spring", Shape.VECTOR, NUMBER))
+
+
+BODIES = {
+    "rigid": (RigidBody(INERTIA), True, True),
+    "damped": (RigidBody(INERTIA, damping=Fraction(1)), False, True),
+    "under a moment": (RigidBody(INERTIA, (Fraction(1),) * 3), False, True),
+    "with wheels": (RigidBody(INERTIA, rotor=(Fraction(1),) * 3), False, True),
+    "of a new kind": (SprungBody(INERTIA), False, False),
+}
+
+
+@pytest.mark.parametrize(("body", "is_plain", "is_known"), BODIES.values(), ids=BODIES)
+def test_a_body_answers_for_itself(body: Body, is_plain: bool, is_known: bool) -> None:
+    """It is plain if its energy alone moves it; causes are searched for if every part has its terms."""
+    assert body.is_plain is is_plain
+    assert are_known(body) is is_known
+
+
+@pytest.mark.parametrize("name", ["outside:mujoco", "outside:basilisk", "outside:dop853"])
+def test_an_engine_does_not_take_a_new_kind(name: str) -> None:
+    """Whatever loads it takes, it names the part that it does not know."""
+    engine: Any = solver_named(name)
+    problem = SimpleNamespace(given=SimpleNamespace(model="euler", body=SprungBody(INERTIA)))
+    assert engine.unsuited(problem) == f"{engine.name} is made for a body without spring"
+    problem.given.body = RigidBody(INERTIA)
+    assert engine.unsuited(problem) == ""
+
+
+@pytest.mark.parametrize(
+    "name", ["geometric:splitting?step=0.1", "geometric:implicit-midpoint?step=1"]
+)
+def test_a_method_for_bodies_it_knows_does_not_take_a_new_kind(name: str) -> None:
+    """A method names the part that it does not know, and takes the same body without it."""
+    solver: Any = solver_named(name)
+    scene = replace(taylor_verify.load("euler/generic"), body=SprungBody(INERTIA))
+    problem: Any = SimpleNamespace(scene=scene, given=scene, initial_momenta=(1, 1, 1))
+    assert solver.unsuited(problem) == f"{solver.name} is made for a body without spring"
+    problem.given = replace(scene, body=RigidBody(INERTIA))
+    assert solver.unsuited(problem) == ""
+
+
+def test_a_program_can_tell_a_new_kind() -> None:
+    """The version of its question is beyond all that programs know."""
+    assert protocol._version(SprungBody(INERTIA)) > max(protocol.VERSIONS.values())
+    for body, version in (("rigid", 1), ("under a moment", 1), ("with wheels", 3), ("damped", 4)):
+        assert protocol._version(BODIES[body][0]) == version
+
+
+def test_causes_that_are_not_looked_for_are_told() -> None:
+    """A failed answer about a new kind of body has a note in place of silence."""
+    scene = taylor_verify.load("euler/generic")
+    judged = taylor_verify.check(
+        scene, lambda problem: [problem.given.initial.omega] * len(problem.times)
+    )
+    given = SimpleNamespace(body=SprungBody(INERTIA))
+    problem: Any = SimpleNamespace(scene=scene, given=given)
+    judged = with_causes(replace(judged, notes=()), problem, SimpleNamespace())  # type: ignore[arg-type]
+    assert judged.notes == (NOT_LOOKED_FOR,)
+
+
+# What the truth asks of a kind
+
+SAMPLES = {
+    "euler": (RigidBody(TENSOR, MOMENT), SPIN),
+    "wheels": (RigidBody(TENSOR, MOMENT, OMEGA), SPIN),
+    "kirchhoff": (LOADED, IMPULSE),
+}
+
+
+def exact_rates(equations: Equations, z: Sequence[Fraction]) -> list[Fraction]:
+    """The right-hand side at z, exactly."""
+    linear, quadratic = equations.linear @ exact(z), exact(z) @ equations.hessian @ exact(z) / 2
+    return list(equations.constant + linear + quadratic)
+
+
+def test_every_shipped_body_has_a_kind() -> None:
+    """No scene has a body of a type without a line in the registry, and no line is without a scene."""
+    assert {type(load(name).body) for name in names()} == set(KINDS)
+
+
+@pytest.mark.parametrize("model", SAMPLES)
+def test_the_momentum_has_the_equations_of_the_state(model: str) -> None:
+    """Its rate is the momentum of the rate of z, its spin and energy are those of z; exactly."""
+    body, initial = SAMPLES[model]
+    kind: Any = kind_of(body)
+    z = kind.state(initial)
+    p = kind.momentum(body, z)
+    assert kind.of_momentum(body, p) == z
+    assert kind.with_state(initial, z) == initial
+    by_state, by_momentum = kind.equations(body), kind.momentum_equations(body)
+    assert tuple(exact_rates(by_momentum, p)) == kind.momentum(
+        body, tuple(exact_rates(by_state, z))
+    )
+    assert (by_momentum.spin @ exact(p) == by_state.spin @ exact(z)).all()
+    energy = dot(z, apply(kind.energy(body), z))
+    assert dot(p, apply(kind.momentum_energy(body), p)) == energy

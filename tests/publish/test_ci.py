@@ -20,7 +20,7 @@ from xml.etree import ElementTree
 import pytest
 from builders.processes import on_one_core
 from builders.scenes import LISTED_INSTANTS, scene_file
-from builders.schema import SCHEMA, violations
+from builders.verdicts import SCHEMA, violations
 from builders.verdicts import far_off as row
 from hypothesis import given
 from hypothesis import strategies as st

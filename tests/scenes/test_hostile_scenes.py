@@ -170,7 +170,7 @@ FRAGMENT, COUNT = "# refused: ", "# faults: "
 
 
 def promise(file: Path) -> str:
-    """The first line of a file, which says what its refused_file must be."""
+    """The first line of a file, which says what its refusal must be."""
     return file.read_text().splitlines()[0]
 
 

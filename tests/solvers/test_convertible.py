@@ -1,7 +1,8 @@
-"""The numbers that a function gets convert to doubles as `float` does, without a type."""
+"""Numbers between libraries: to doubles as `float` does, without a type, and to MPFR to the last bit."""
 
 from __future__ import annotations
 
+import operator
 import sys
 from collections.abc import Callable
 from fractions import Fraction
@@ -10,11 +11,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp, mpf
 
 import taylor_verify
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.convertible import Convertible, convertible
 from taylor_verify.records.faults import Refused
+from taylor_verify.scenes.mpfr import precision, sqrt, to_mpf, to_mpfr
 
 THIRDS = convertible(((Fraction(1, 3), Fraction(2, 3)), (Fraction(1), Fraction(0))))
 
@@ -102,3 +107,52 @@ def test_exact_numbers_come_back_exact(rung: str) -> None:
 def test_more_than_a_double_stays_rational() -> None:
     """No number converts without a type on a precision beyond a double."""
     assert np.asarray(problem("euler/generic", "mp237").given.initial.omega).dtype == object
+
+
+# MPFR
+
+OPERATIONS = (operator.add, operator.sub, operator.mul, operator.truediv)
+
+
+def exactly(count: int, exponent: int) -> mpf:
+    with mp.workprec(10_000):
+        return mp.ldexp(mpf(count), exponent)
+
+
+def column(*values: mpf) -> np.ndarray:
+    return np.array(values, dtype=object)
+
+
+# Far longer than what they are computed with.
+numbers = st.builds(exactly, st.integers(-(2**600), 2**600), st.integers(-2000, 2000))
+
+
+@given(numbers, st.integers(2, 400))
+def test_the_way_there_and_back_is_exact_at_any_precision(value: mpf, bits: int) -> None:
+    """No bit of a number is lost, however low the ambient precision is."""
+    with mp.workprec(bits):
+        (there_and_back,) = to_mpf(to_mpfr(column(value)))
+    assert there_and_back._mpf_ == value._mpf_
+
+
+@given(numbers, numbers, st.integers(2, 400))
+def test_every_operation_rounds_as_mpmath_does(a: mpf, b: mpf, bits: int) -> None:
+    """Sums, differences, products, quotients and roots are mpmath's to the last bit."""
+    with mp.workprec(bits):
+        p, q = to_mpfr(column(a)), to_mpfr(column(b))
+        for operation in OPERATIONS:
+            if operation is operator.truediv and b == 0:
+                continue
+            with precision():
+                result = operation(p, q)
+            assert to_mpf(result)[0]._mpf_ == operation(a, b)._mpf_
+        with precision():
+            root = sqrt(abs(p))
+        assert to_mpf(root)[0]._mpf_ == mp.sqrt(abs(a))._mpf_
+
+
+def test_what_is_not_finite_stays_so() -> None:
+    """NaN and both infinities keep what they are, there and back."""
+    nan, up, down = to_mpf(to_mpfr(column(mp.nan, mp.inf, -mp.inf)))
+    assert mp.isnan(nan)
+    assert (up, down) == (mp.inf, -mp.inf)

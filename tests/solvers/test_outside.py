@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.programs import imported_tops
+from builders.processes import imported_tops
 from builders.scenes import three_instants
 from builders.turns import by_turns
 from packaging.specifiers import SpecifierSet

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from builders.programs import is_alive
+from builders.processes import is_alive
 from builders.turns import by_turns
 
 from taylor_verify.models.problem import Problem, pose

@@ -18,8 +18,8 @@ from typing import Any
 
 import pytest
 from builders import reports
-from builders.schema import violations
 from builders.verdicts import row as baseline_row
+from builders.verdicts import violations
 
 from taylor_verify.batch.differences import FACTOR, LEVEL, Direction, compare
 from taylor_verify.batch.earlier_file import read_baseline
