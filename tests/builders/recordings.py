@@ -136,12 +136,12 @@ def _made(types: Mapping[str, Any], name: str, values: Mapping[str, Any]) -> Any
 
 
 def write_rosbag1(
-    file: Path, columns: Columns, packed: rosbag1.Writer.CompressionFormat | None = None
+    file: Path, columns: Columns, compression: rosbag1.Writer.CompressionFormat | None = None
 ) -> None:
     types = get_typestore(Stores.ROS1_NOETIC)
     writer = rosbag1.Writer(file)
-    if packed is not None:
-        writer.set_compression(packed)
+    if compression is not None:
+        writer.set_compression(compression)
     with writer:
         name = "sensor_msgs/msg/Imu"
         connection = writer.add_connection("/imu", name, typestore=types)

@@ -147,16 +147,6 @@ def test_the_question_is_that_of_the_scene(scene: str) -> None:
         assert abs(Fraction(text) - instant) <= abs(instant) * Fraction(1, 2 * 10**31)
 
 
-@by_set
-def test_no_file_of_a_scene_that_is_gone(scenes: Sequence[str]) -> None:
-    """The folder holds the files of each shipped scene, the page and the examples."""
-    expected = {file(scene, suffix).name for scene in scenes for suffix in ("csv", "json")}
-    assert {path.name for path in folder(scenes).iterdir()} == expected | {
-        "README.md",
-        *reference_files.EXAMPLES,
-    }
-
-
 @by_scene(names())
 def test_at_least_thirty_digits(scene: str) -> None:
     """Every number but zero shows 32 significant digits, and no row is off by more than 10^-30."""

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -95,22 +96,20 @@ def test_formats_name_what_they_need(tmp_path: Path) -> None:
 # Recordings of ROS.
 
 
-@pytest.mark.parametrize("compression", CompressionType)
-def test_mcap_is_read_however_it_is_packed(
-    compression: CompressionType, columns: Columns, tmp_path: Path
+@pytest.mark.parametrize(
+    ("suffix", "packed"),
+    [
+        *(("mcap", packed) for packed in CompressionType),
+        *(("bag", packed) for packed in rosbag1.Writer.CompressionFormat),
+    ],
+)
+def test_recordings_are_read_however_they_are_packed(
+    suffix: str, packed: Any, columns: Columns, tmp_path: Path
 ) -> None:
-    """Chunks in zstd, in lz4 and as they are hold the same messages."""
-    recordings.write_mcap(tmp_path / "run.mcap", columns, compression=compression)
-    assert len(read(tmp_path / "run.mcap").times) == len(columns["t"])
-
-
-@pytest.mark.parametrize("packed", rosbag1.Writer.CompressionFormat)
-def test_bags_of_ros_1_are_read_however_they_are_packed(
-    packed: rosbag1.Writer.CompressionFormat, columns: Columns, tmp_path: Path
-) -> None:
-    """Chunks in bz2 and lz4 hold the same messages."""
-    recordings.write_rosbag1(tmp_path / "run.bag", columns, packed)
-    assert len(read(tmp_path / "run.bag").times) == len(columns["t"])
+    """Chunks in zstd, lz4, bz2 and as they are hold the same messages."""
+    write = {"mcap": recordings.write_mcap, "bag": recordings.write_rosbag1}[suffix]
+    write(tmp_path / f"run.{suffix}", columns, compression=packed)
+    assert len(read(tmp_path / f"run.{suffix}").times) == len(columns["t"])
 
 
 def test_folders_of_ros_2_hold_either_storage(columns: Columns, tmp_path: Path) -> None:
