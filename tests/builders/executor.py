@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import (
-    Executor,
-    Future,
-)
+from concurrent.futures import Executor, Future
 from typing import Any
 
 

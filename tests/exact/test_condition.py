@@ -10,15 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.scenes import (
-    CLEBSCH,
-    LOADED,
-    MOMENT,
-    QUATERNION,
-    TENSOR,
-    sample_scene,
-    vector,
-)
+from builders.scenes import CLEBSCH, LOADED, MOMENT, QUATERNION, TENSOR, sample_scene, vector
 from builders.turns import by_turns
 from builders.written_loads import euler, kirchhoff
 from mpmath import mp
@@ -34,14 +26,7 @@ from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.floor import rounded_input
 from taylor_verify.judge.floor.rounded_input import input_rounding
 from taylor_verify.numbers.precision import rung
-from taylor_verify.numbers.tensors import (
-    Matrix,
-    apply,
-    diagonal,
-    inverse,
-    product,
-    transpose,
-)
+from taylor_verify.numbers.tensors import Matrix, apply, diagonal, inverse, product, transpose
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Spin

@@ -9,14 +9,7 @@ from typing import Any
 import pytest
 from builders.boxes import CASES, TRUTHS, WIDE, corners, enclosed, is_contained, with_few_orders
 from builders.numbers import largest
-from builders.scenes import (
-    MOMENT,
-    QUATERNION,
-    TENSOR,
-    one_instant,
-    sample_scene,
-    vector,
-)
+from builders.scenes import MOMENT, QUATERNION, TENSOR, one_instant, sample_scene, vector
 from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf

@@ -11,14 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from builders.free_spins import (
-    EXTREMES,
-    OBLIQUE,
-    SPINS,
-    near_separatrix,
-    spinning,
-    turned,
-)
+from builders.free_spins import EXTREMES, OBLIQUE, SPINS, near_separatrix, spinning, turned
 from builders.numbers import overlap
 from builders.scenes import one_instant, vector
 from builders.turns import by_turns

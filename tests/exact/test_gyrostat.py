@@ -8,15 +8,7 @@ from typing import Any
 
 import pytest
 from builders.free_spins import rotation
-from builders.gyrostats import (
-    MOTIONS,
-    OMEGA,
-    ROTOR,
-    TRIAXIAL,
-    paced,
-    scene_of,
-    turned,
-)
+from builders.gyrostats import MOTIONS, OMEGA, ROTOR, TRIAXIAL, paced, scene_of, turned
 from builders.hostile_gyrostats import KINDS, hostile
 from builders.numbers import apart
 from builders.scenes import vector

@@ -12,15 +12,7 @@ from builders.caused_rows import RIGID as BODY
 from builders.caused_rows import rigid, titles
 from builders.first_order import Kick, engine, implicit, none
 from builders.turns import by_turns
-from builders.wrong_dynamics import (
-    Array,
-    Columns,
-    Numbers,
-    Rate,
-    causes,
-    runge_kutta,
-    simulated,
-)
+from builders.wrong_dynamics import Array, Columns, Numbers, Rate, causes, runge_kutta, simulated
 
 from taylor_verify.scenes.reading.reader import load
 

@@ -12,16 +12,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from builders.studies.hard import (
-    ALL,
-    DRIFT,
-    MISMATCH,
-    REACH,
-    WHY,
-    row,
-    study,
-    worst_of,
-)
+from builders.studies.hard import ALL, DRIFT, MISMATCH, REACH, WHY, row, study, worst_of
 from builders.studies.stored import publish_document
 from builders.verdicts import passed
 from hypothesis import given

@@ -15,16 +15,7 @@ from unittest.mock import patch
 
 import pytest
 from builders.processes import printed_by
-from builders.verdicts import (
-    MIXED,
-    NAN,
-    PROVENANCE,
-    RECORD,
-    STOPPED,
-    VERSIONS,
-    passed,
-    unscored,
-)
+from builders.verdicts import MIXED, NAN, PROVENANCE, RECORD, STOPPED, VERSIONS, passed, unscored
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 

@@ -34,10 +34,7 @@ from taylor_verify.tradeoff.random_starts import STARTS, nearby
 from taylor_verify.tradeoff.recommendation import MARGIN, OutOfReach, recommend, recommended
 from taylor_verify.tradeoff.setting import Setting, settings
 from taylor_verify.tradeoff.solves import Timed
-from taylor_verify.tradeoff.trade_off import (
-    front,
-    trade_off,
-)
+from taylor_verify.tradeoff.trade_off import front, trade_off
 
 F64 = rung("f64")
 
