@@ -9,7 +9,7 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from builders.fields import drawn, verdict
+from builders.text_functions import drawn, verdict
 
 
 def main(first: int, count: int, file: Path) -> None:

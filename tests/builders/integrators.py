@@ -1,16 +1,29 @@
-"""Integrators of few lines: Euler, Runge-Kutta and extrapolation."""
+"""Integrators of few lines: Euler, Runge-Kutta and extrapolation; and the order that steps show."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from math import ceil
+from typing import Any, final
 
 import numpy as np
 from mpmath import mpf
 
 from builders.numbers import cross
-from taylor_verify.models.problem import Problem
+from builders.trajectories import QUATERNION, VECTORS, Columns, named
+from builders.verdicts import by_quantity
+from taylor_verify.judge.judgement import judgement
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.observed_order import SAME, Convergence, convergence
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.callback import Callback
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.trajectory import Trajectory
 
 Floats = np.ndarray[Any, Any]
 
@@ -106,3 +119,93 @@ def _midpoint(rates: Rates, t: Any, y: Vector, h: Any, count: int) -> Vector:
         before, here = here, [a + 2 * s * r for a, r in zip(before, rate, strict=True)]
     rate = rates(t + h, here)
     return [(a + b + s * r) / 2 for a, b, r in zip(before, here, rate, strict=True)]
+
+
+# The order of convergence of a solver that takes a step
+
+Answer = Callable[[Problem, float], Any]
+
+
+@final
+@dataclass(frozen=True)
+class AtStep(Solver):
+    """A function at one step; it counts as many steps as fit into the span."""
+
+    answer: Answer
+    step: float
+    setting: str = ""
+    name: str = "fixed step"
+
+    def solve(self, problem: Problem) -> Trajectory:
+        trajectory = Callback(lambda posed: self.answer(posed, self.step)).solve(problem)
+        span = max(abs(t) for t in problem.given.clock.elapsed)
+        return replace(trajectory, steps=ceil(float(span) / self.step))
+
+
+def by_step(scene: Scene, answer: Answer, steps: Sequence[float]) -> dict[str, Convergence]:
+    """The convergence of every quantity that is measured."""
+    problem = pose(scene, rung("f64"))
+    solvers = [AtStep(answer, step) for step in steps]
+    judged = [by_quantity(judgement(problem, s, s.solve(problem))) for s in solvers]
+    orders = {}
+    for name in dict.fromkeys(
+        n for rows in judged for n, row in rows.items() if row.at is not None
+    ):
+        rows = [each.get(name) for each in judged]
+        errors = [r.max if r and r.verdict is not Status.UNDECIDED else None for r in rows]
+        floors = [(row.attainable or 0.0) if row else 0.0 for row in rows]
+        orders[name] = convergence(steps, errors, floors)
+    return orders
+
+
+def has_order(fit: Convergence, order: float) -> bool:
+    """Return True if the steps show this order, within the scatter of local orders."""
+    return fit.order is not None and abs(fit.order - order) <= SAME
+
+
+# First-order engines
+
+Array = np.ndarray[Any, Any]
+# omega after a step of length h, from I, the momentum of the wheels, omega, the moment M and h.
+Kick = Callable[[Array, Array, Array, Array, float], Array]
+
+
+def none(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
+    return w + h * np.linalg.solve(inertia, moment)
+
+
+def explicit(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
+    return w + h * np.linalg.solve(inertia, moment - cross(w, inertia @ w + rotor))
+
+
+def without_wheels(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
+    """An implicit step that knows nothing of the wheels."""
+    return implicit(inertia, 0 * rotor, w, moment, h)
+
+
+def implicit(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) -> Array:
+    """One step of Newton's method for I (w' - w) = h (M - w' x (I w' + rotor))."""
+    momentum = inertia @ w + rotor
+    slope = np.column_stack([cross(e, momentum) + cross(w, inertia @ e) for e in np.eye(3)])
+    return w + h * np.linalg.solve(inertia + h * slope, moment - cross(w, momentum))
+
+
+def engine(scene: str, kick: Kick, h: float, rows: int, every: int = 1) -> Columns:
+    """Rows of t, omega in body axes and a unit quaternion; a row after every so many steps."""
+    given = load(scene)
+    inertia = np.array(given.body.inertia, dtype=float)
+    moment = np.array(given.body.moment, dtype=float)
+    rotor = np.array(given.body.rotor, dtype=float)
+    w = np.array(given.initial.omega, dtype=float)
+    q = np.array(given.initial.attitude, dtype=float)
+    q /= np.linalg.norm(q)
+    start, states = float(given.clock.start), []
+    for step in range((rows - 1) * every + 1):
+        if step % every == 0:
+            states.append([start + step * h, *w, *q])
+        w = kick(inertia, rotor, w, moment, h)
+        q = turned(q, h * w)
+        q /= np.linalg.norm(q)
+    table = np.array(states)
+    columns = named(("t",), table[:, :1])
+    return columns | named(VECTORS["omega"], table[:, 1:4]) | named(QUATERNION, table[:, 4:])

@@ -189,3 +189,40 @@ def scene_file(folder: Path, text: str = THREE_INSTANTS) -> Path:
     file = folder / "short.toml"
     file.write_text(text, encoding="utf-8")
     return file
+
+
+# All that an engine may be given
+
+_TEXT = scene_text(
+    """inertia = [1.25, 1, 1.5]
+damping = "1/50"
+rotor = ["h", 0, "h^2/4"]
+moment = ["m1 - w1*abs(w2)/9", "m2", "0.1 if t < 3 else -0.1*q1"]""",
+    "omega = [0.25, -0.5, 0.375]\nattitude = [0.5, 0.5, -0.5, 0.5]",
+    """[states]
+h = { start = "1/8", rate = "q1 - w2/4" }
+m = { every = "1/4", value = ["-sign(q1)/9", "clip(-w2, -0.1, 0.1)"] }""",
+    "start = 1\nend = 5\nsamples = 9",
+    'track = ["attitude", "m", "h"]',
+)
+# What has a kink in the text, and what takes its place where the motion is to be smooth.
+_SMOOTH = {"abs(w2)": "w2", "-sign(q1)/9": "-q1/9", "clip(-w2, -0.1, 0.1)": "-w2/5"}
+
+
+def acted(is_smooth: bool = False) -> Scene:
+    text = _TEXT
+    for kink, smooth in _SMOOTH.items() if is_smooth else ():
+        text = text.replace(kink, smooth)
+    return read(text, "acted")
+
+
+# An oblique attitude
+
+FULL = "[[1.2, 0.1, -0.2], [0.1, 2.1, 0.3], [-0.2, 0.3, 2.7]]"
+FORWARDS, BACKWARDS = ("end = 4\nsamples = 5", "end = -4\nsamples = 5")
+
+
+def oblique(inertia: str = FULL, time: str = FORWARDS) -> Scene:
+    """Return the scene, its keys as a file has them."""
+    start, top = "omega = [0.9, -0.3, 0.5]\nattitude = [1, 2, -1, 3]", 'track = ["attitude"]'
+    return read_scene(f"inertia = {inertia}", start, time=time, top=top)

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 import pytest
-from builders.fields import drawn, verdict
+from builders.text_functions import drawn, verdict
 from mpmath import mp, mpf, odefun, sin, sqrt
 
 from taylor_verify import enclose

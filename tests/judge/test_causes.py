@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.first_order import engine, none
+from builders.integrators import engine, none
 from builders.trajectories import (
     QUATERNION,
     VECTORS,

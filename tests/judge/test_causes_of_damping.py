@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from builders.caused_rows import RIGID as BODY
 from builders.caused_rows import rigid, titles
-from builders.first_order import Kick, engine, implicit, none
+from builders.integrators import Kick, engine, implicit, none
 from builders.turns import by_turns
 from builders.wrong_dynamics import Array, Columns, Numbers, Rate, causes, runge_kutta, simulated
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.first_order import engine, explicit
+from builders.integrators import engine, explicit
 from builders.scenes import scene_text
 from builders.trajectories import (
     MATRIX,

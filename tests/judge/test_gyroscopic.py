@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.first_order import Kick, engine, explicit, implicit, none, without_wheels
+from builders.integrators import Kick, engine, explicit, implicit, none, without_wheels
 from builders.trajectories import Columns, exact_columns, file_judgement, write_csv
 from builders.turns import by_turns
 

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.acted import acted
 from builders.engine import ENGINE
+from builders.scenes import acted
 from builders.turns import by_turns
 from builders.worked import DOCS
 

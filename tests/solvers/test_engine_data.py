@@ -9,9 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.acted import acted
 from builders.engine import ENGINE
-from builders.scenes import read_scene
+from builders.scenes import acted, read_scene
 
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import pose

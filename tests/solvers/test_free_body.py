@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.oblique import BACKWARDS, oblique
-from builders.scenes import text_of
+from builders.scenes import BACKWARDS, oblique, text_of
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung

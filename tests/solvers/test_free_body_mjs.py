@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.oblique import BACKWARDS, FULL, oblique
+from builders.scenes import BACKWARDS, FULL, oblique
 from builders.turns import by_turns
 
 from taylor_verify.models.problem import Problem, pose

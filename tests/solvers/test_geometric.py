@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.integrators import by_step, has_order
 from builders.scenes import asked_at
-from builders.steps import by_step, has_order
 from builders.turns import by_turns
 from builders.verdicts import by_quantity
 from hypothesis import given, settings

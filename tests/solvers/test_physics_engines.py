@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.acted import acted
-from builders.oblique import oblique
 from builders.processes import PATIENCE
+from builders.scenes import acted, oblique
 
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.acted import acted
+from builders.scenes import acted
 from builders.trajectories import (
     Columns,
     columns_at,
