@@ -306,20 +306,3 @@ def test_the_dependence_of_a_value_on_the_state_is_needed(monkeypatch: pytest.Mo
 
     monkeypatch.setattr(Image, "outputs", flat)
     assert not is_contained("sampled", ends)
-
-
-def test_the_derivative_goes_through_instants() -> None:
-    """Each halving of w halves what is left of its start."""
-    scene = about_axes('m = { every = "1/2", value = "-w1" }', 'moment = ["m", 0, 0]', "[1, 0, 0]")
-    system = posed(scene)
-    with ctx.workprec(80):
-        start = [z + arb(0, arb(2) ** -60) for z in system.start_balls()]
-        course = replace(Course.of(system, start, 80, 1000), differentiates=True)
-        rows = [row for _, row in course.rows([Fraction(1), Fraction(5, 4), Fraction(3)])]
-        slopes = [row.since.tolist() for row in rows if row.since is not None]
-        # Of w at 1, 5/4 and 3 by w and m at the row before, which is read after its instant.
-        wanted = ((0.25, 0), (1, 0.25), (0.125, 0.03125))
-        for matrix, (by_omega, by_value) in zip(slopes, wanted, strict=True):
-            assert matrix[0][0].overlaps(arb(by_omega))
-            assert matrix[0][3].overlaps(arb(by_value))
-            assert matrix[0][0].rad() < 1e-6

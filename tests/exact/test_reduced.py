@@ -334,21 +334,25 @@ def test_the_routes_overlap_on_tops(C: Matrix, start: Impulse, d: Vector, b: Fra
 # What ships, and what is said of it.
 
 SHIPPED = {
-    "axis-beside-the-origin": "four-roots",
-    "displaced-origin": "max-axis",
-    "no-linear-impulse": "min-axis",
-    "steady-screw": "steady",
-    "steady-screw-under-loads": "steady",
-    "weber": "weber",
+    "euler/separatrix": "separatrix",
+    "euler/separatrix-full-tensor": "separatrix",
+    "euler/oblique-symmetry": "axisymmetric",
+    "kirchhoff/axis-beside-the-origin": "four-roots",
+    "kirchhoff/displaced-origin": "max-axis",
+    "kirchhoff/no-linear-impulse": "min-axis",
+    "kirchhoff/steady-screw": "steady",
+    "kirchhoff/steady-screw-under-loads": "steady",
+    "kirchhoff/weber": "weber",
 }
 
 
 @pytest.mark.parametrize("step", LADDER)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_what_ships_is_of_its_case_on_every_rung(name: str, step: str) -> None:
-    """The conditions survive the rounding of each rung."""
-    given = pose(load(f"kirchhoff/{name}"), rung(step)).given
-    assert solution(given).regime == SHIPPED[name]
+    """The conditions of a special orbit, which are dyadic, survive the rounding of each rung."""
+    scene = load(name)
+    for asked in (scene, pose(scene, rung(step)).given):
+        assert solution(asked).regime == SHIPPED[name]
 
 
 def test_the_elements_are_those_of_the_inner_motion() -> None:
