@@ -19,8 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.executor import Backwards
-from builders.processes import PATIENCE
+from builders.processes import PATIENCE, Backwards
 from builders.scenes import THREE_INSTANTS
 
 import taylor_verify

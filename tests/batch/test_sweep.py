@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.executor import Backwards
+from builders.processes import Backwards
 from builders.sweeps import FAILING, SOLVER, TEMPLATE, parts, rows, swept
 
 from taylor_verify.batch.failure import Failed

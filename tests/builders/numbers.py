@@ -1,15 +1,19 @@
-"""Numbers and arrays of mpmath: exact values, largest entries, distances of motions."""
+"""Numbers and arrays of mpmath, distances of motions, and the closed routes of a scene."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.exact.solution import Motion
+from taylor_verify.exact.route import CLOSED_ROUTES, solution
+from taylor_verify.exact.solution import Motion, NoClosedForm
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
 
@@ -66,3 +70,34 @@ def overlap(one: Motion, other: Motion) -> bool:
 def _room(values: Array, radius: mpf) -> mpf:
     """Return the radius times the largest norm that the truth can have."""
     return radius * (mp.norm(list(values.flat)) / (1 - radius) or 1)
+
+
+# Closed routes
+
+
+def has_route(scene: Scene, route: str) -> bool:
+    """True if the scene has a closed form by this route."""
+    try:
+        solution(scene, route)
+    except NoClosedForm:
+        return False
+    return True
+
+
+def closed_routes(scene: Scene) -> list[str]:
+    """The routes by which a scene has a closed form: balls, mpmath where it has one, or none."""
+    return [route for route in CLOSED_ROUTES if has_route(scene, route)]
+
+
+def motions_of_taylor(
+    scene: Scene, regime: str, times: Sequence[Fraction], digits: int
+) -> list[Motion]:
+    """Return the motion by each closed route, which has this regime and all digits of the enclosed one."""
+    truth, motions = solution(scene, "taylor").motion(times, digits), []
+    for route in closed_routes(scene):
+        exact = solution(scene, route)
+        assert (exact.regime, exact.route) == (regime, route)
+        motions.append(exact.motion(times, digits))
+        with mp.workdps(2 * digits + 20):
+            assert apart(motions[-1], truth) <= 2 * mpf(10) ** -digits
+    return motions

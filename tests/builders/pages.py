@@ -10,8 +10,3 @@ def table_rows(page: str) -> list[list[str]]:
     text = (DOCS / page).read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if line.startswith("| ")]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
-
-
-def results() -> list[list[str]]:
-    """The rows of docs/results.md that quote a published verdict."""
-    return [row for row in table_rows("results.md") if row[0].startswith("`")]

@@ -1,4 +1,4 @@
-"""Processes of tests, and programs of other people: interrupts, waiting, imports."""
+"""Processes of tests, programs of other people, and an executor of somebody else."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 # Seconds after which a test gives up; only a fault takes so long, however busy the machine is.
 PATIENCE: Final = 120.0
@@ -84,3 +86,29 @@ def is_alive(pid: int | str) -> bool:
     except (FileNotFoundError, ProcessLookupError):
         return False
     return state not in {"Z", "X"}
+
+
+# An executor
+
+
+class Backwards(Executor):
+    """An executor of somebody's own: it waits until ``count`` are submitted and begins with the last."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.calls: list[tuple[Future[Any], Callable[[], Any]]] = []
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        self.calls.append((future, lambda: fn(*args, **kwargs)))
+        if len(self.calls) == self.count:
+            threading.Thread(target=self._run).start()
+        return future
+
+    def _run(self) -> None:
+        for future, call in reversed(self.calls):
+            if future.set_running_or_notify_cancel():
+                try:
+                    future.set_result(call())
+                except BaseException as error:
+                    future.set_exception(error)

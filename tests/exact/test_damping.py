@@ -7,8 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from builders.numbers import apart, overlap
-from builders.routes import closed_routes
+from builders.numbers import apart, closed_routes, overlap
 from builders.scenes import everything
 from builders.turns import by_turns
 from mpmath import mp

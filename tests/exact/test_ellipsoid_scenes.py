@@ -6,8 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from builders.numbers import apart
-from builders.routes import motions_of_taylor
+from builders.numbers import apart, motions_of_taylor
 from builders.scenes import one_instant, vector
 from mpmath import mp, mpf
 

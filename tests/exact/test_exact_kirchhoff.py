@@ -29,8 +29,7 @@ from builders.clebsch import (
     exact,
     falling,
 )
-from builders.numbers import overlap
-from builders.routes import closed_routes
+from builders.numbers import closed_routes, overlap
 from builders.scenes import one_instant, vector
 from builders.turns import by_turns
 from flint import acb, arb, ctx

@@ -10,8 +10,7 @@ from itertools import product
 
 import pytest
 from builders.clebsch import STOUT
-from builders.numbers import apart
-from builders.routes import motions_of_taylor
+from builders.numbers import apart, motions_of_taylor
 from builders.scenes import one_instant, vector
 from builders.turns import by_turns
 from mpmath import mp, mpf

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 import pytest
-from builders.routes import closed_routes
+from builders.numbers import closed_routes
 from builders.scenes import one_instant, read_scene, text_of, vector
 from builders.turns import by_turns
 from flint import arb

@@ -7,9 +7,8 @@ from fractions import Fraction
 
 import pytest
 from builders.free_spins import rotation
-from builders.numbers import apart
+from builders.numbers import apart, motions_of_taylor
 from builders.numbers import apart as distance
-from builders.routes import motions_of_taylor
 from builders.scenes import one_instant, read_scene, vector
 from builders.turns import by_turns
 from mpmath import mp, mpf

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.numbers import apart
-from builders.routes import closed_routes, motions_of_taylor
+from builders.numbers import apart, closed_routes, motions_of_taylor
 from builders.scenes import COUPLE, FORCE, GENERAL, one_instant, vector
 from hypothesis import given, settings
 from hypothesis import strategies as st

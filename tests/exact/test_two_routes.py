@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.free_spins import rotation
-from builders.numbers import overlap
-from builders.routes import has_route
+from builders.numbers import has_route, overlap
 from builders.scenes import FRAME, PLACE, everything, one_instant
 from builders.turns import by_turns
 from flint import arb, ctx

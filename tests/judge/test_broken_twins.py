@@ -14,7 +14,7 @@ from functools import cache
 from typing import Any
 
 import pytest
-from builders.routes import closed_routes
+from builders.numbers import closed_routes
 from builders.scenes import tracking_all
 from builders.turns import by_turns
 from mpmath import mp, mpf

@@ -51,17 +51,6 @@ def kirchhoff(top: str = "") -> Scene:
 # Numbers
 
 
-def test_a_decimal_is_the_rational_it_writes() -> None:
-    """0.1 is one tenth, and not the binary number beside it."""
-    assert euler().initial.omega == (Fraction(1, 10), Fraction(1), Fraction(3, 10))
-
-
-@given(INTEGERS, st.integers(1, 10**12))
-def test_a_fraction_in_a_string_is_exact(a: int, b: int) -> None:
-    """``"a/b"`` is a divided by b."""
-    assert exact_number(f"{a}/{b}") == Fraction(a, b)
-
-
 @given(INTEGERS, st.integers(-LARGEST_EXPONENT, LARGEST_EXPONENT - 13))
 def test_an_exponent_shifts_the_decimal_point(digits: int, exponent: int) -> None:
     """``12e-3`` is 12/1000, in a string as well as bare, up to the largest exponent allowed."""
