@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from builders.scenes import scene_text
 from builders.trajectories import QUATERNION, Columns, named, write_csv
 from builders.wrong_dynamics import failure, turned
 from taylor_verify.judge.causes.likely import explained
@@ -27,20 +28,12 @@ Law = Callable[[float, Array, Array], Array]
 TENSOR = np.array([[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]])
 Q = np.array([-0.5, 0.3, -0.7, 0.2]) / np.linalg.norm([-0.5, 0.3, -0.7, 0.2])
 TIMES = np.round(np.arange(0, 81) * 0.1, 6)
-RIGID = """
-title = "Body"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]]
-{load}
-[initial]
-omega = [0.8, -0.5, 1.1]
-attitude = [-0.5, 0.3, -0.7, 0.2]
-[time]
-end = 8
-samples = 81
-"""
+RIGID = scene_text(
+    "inertia = [[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]]\n{load}",
+    "omega = [0.8, -0.5, 1.1]\nattitude = [-0.5, 0.3, -0.7, 0.2]",
+    time="end = 8\nsamples = 81",
+    top='track = ["attitude"]',
+)
 
 
 def rows(law: Law, v0: Sequence[float], q0: Array, times: Array, edges: Sequence[float]) -> Array:

@@ -137,17 +137,7 @@ def faults_of(*parts: str, **others: str) -> tuple[str, ...]:
 
 
 # Scenes that are judged in a moment: three instants, the start among them, and three without it.
-THREE_INSTANTS = """
-title = "Three instants"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, 0.4, 0.3]
-[time]
-end = 2
-samples = 3
-"""
+THREE_INSTANTS = scene_text(initial="omega = [1, 0.4, 0.3]", time="end = 2\nsamples = 3")
 
 
 def three_instants(on: str = "f64", samples: int = 3) -> Problem:
@@ -156,16 +146,7 @@ def three_instants(on: str = "f64", samples: int = 3) -> Problem:
     return pose(read(text, "short"), rung(on))
 
 
-LISTED_INSTANTS = """
-title = "A short motion"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, "0.4", "0.3"]
-[time]
-at = ["0.5", 1, 2]
-"""
+LISTED_INSTANTS = scene_text(initial='omega = [1, "0.4", "0.3"]', time='at = ["0.5", 1, 2]')
 
 
 def remus_inertia() -> Matrix:

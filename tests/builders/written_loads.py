@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from mpmath import mp, mpf
 
 from builders.integrators import extrapolated
+from builders.scenes import scene_text
 from builders.text_functions import FUNCTIONS, Sides, tabulated, value
 from taylor_verify.scenes.loads.states import Continuous, Held
 from taylor_verify.scenes.reading.reader import read
@@ -67,18 +68,9 @@ start = "1/4"
 end = "{end}"
 samples = 2
 """
-ABOUT_AXES = """
-title = "About axes"
-model = "euler"
-[body]
-inertia = [1, 1, 1]
-moment = {moment}
-[initial]
-omega = {omega}
-[time]
-end = {end}
-samples = 2
-"""
+ABOUT_AXES = scene_text(
+    "inertia = [1, 1, 1]\nmoment = {moment}", "omega = {omega}", time="end = {end}\nsamples = 2"
+)
 
 
 def about_axes(moment: str, omega: str = "[0, 0, 0]", end: str = "1") -> Scene:

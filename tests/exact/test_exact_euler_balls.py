@@ -16,16 +16,19 @@ from builders.numbers import overlap
 from builders.scenes import one_instant, vector
 from builders.turns import by_turns
 from flint import arb
-from mpmath import mpf
+from mpmath import mp, mpf
 
+from taylor_verify.exact import balls
+from taylor_verify.exact.balls import Enclosed, Enclosure
 from taylor_verify.exact.euler import closed, jacobi
 from taylor_verify.exact.euler.closed import enclosed
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.euler.rotations import Moving
+from taylor_verify.exact.euler.rotations import Moving, RotationBalls
 from taylor_verify.exact.gyrostat import sigma
 from taylor_verify.exact.gyrostat.sigma import top_rotation
 from taylor_verify.exact.lattice import Lattice
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import IDENTITY, Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
@@ -106,6 +109,41 @@ def test_agrees_with_taylor(name: str) -> None:
     assert overlap(motion, TaylorSolution(scene(SPINS[name])).motion(at, 40))
 
 
+# The radius
+
+
+class Coarse(Enclosed):
+    """One quantity at times that are known only to ``spread``: its balls must hold all of them."""
+
+    def __init__(self, rotation: RotationBalls, name: str, spread: Fraction) -> None:
+        self.regime = rotation.regime
+        self._rotation, self._name, self._spread = rotation, name, spread
+
+    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+        blurred = [ball(t) + arb(0, ball(self._spread)) for t in elapsed]
+        return {self._name: self._rotation.enclose(blurred, bits)[self._name]}
+
+
+def radius_covers_the_error(spin: FreeSpin) -> None:
+    """A midpoint is off by its radius at most, where the true error is known and nearly as large."""
+    rotation, spread = top_rotation(spin, TILTED), Fraction(1, 10**25)
+    at = [Fraction(k, 3) for k in range(1, 40)]
+    for name in ("omega", "attitude"):
+        motion = Coarse(rotation, name, spread).motion(at, 20)
+        for moved in (spread, -spread):
+            true = rotation.motion([t + moved for t in at], DIGITS)
+            assert overlap(motion, replace(true, quantities={name: true[name]}))
+
+
+RADIUS_SPINS = ("max-axis", "min-axis", "separatrix", "axisymmetric, oblate", "steady")
+
+
+@pytest.mark.parametrize("name", RADIUS_SPINS)
+def test_radius_covers_the_error(name: str) -> None:
+    """The radius of a row holds where the error is known: at times blurred on purpose."""
+    radius_covers_the_error(SPINS[name])
+
+
 # Broken twins
 
 
@@ -138,18 +176,40 @@ def _no_integral_of_the_third_kind(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(jacobi.Triaxial, "_integral", lambda self, *at: mpf(0))
 
 
+def _half_a_digit_too_narrow(patch: pytest.MonkeyPatch) -> None:
+    right = balls.widths
+
+    def narrow(rows: Sequence[arb], count: int) -> tuple[Any, Any]:
+        radii, doubles = right(rows, count)
+        return radii / mp.sqrt(10), doubles
+
+    patch.setattr(balls, "widths", narrow)
+
+
+def _agrees(spin: FreeSpin) -> None:
+    agrees_with_mpmath(spin, [Fraction(7, 3)])
+
+
 @pytest.mark.parametrize("name", ["max-axis", "min-axis, backward"])
 @pytest.mark.parametrize(
-    "twin", [_wrong_sign_of_the_phase, _backward, _transposed, _no_integral_of_the_third_kind]
+    ("twin", "check"),
+    [
+        *((_wrong_sign_of_the_phase, _agrees), (_backward, _agrees), (_transposed, _agrees)),
+        (_no_integral_of_the_third_kind, _agrees),
+        (_half_a_digit_too_narrow, radius_covers_the_error),
+    ],
 )
 def test_broken_twin_is_caught(
-    twin: Callable[[pytest.MonkeyPatch], None], name: str, monkeypatch: pytest.MonkeyPatch
+    twin: Callable[[pytest.MonkeyPatch], None],
+    check: Callable[[FreeSpin], None],
+    name: str,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Each deliberate mistake fails the comparison with mpmath, which the right code passes."""
-    agrees_with_mpmath(SPINS[name], [Fraction(7, 3)])
+    """Each deliberate mistake fails the check named beside it, which the right code passes."""
+    check(SPINS[name])
     twin(monkeypatch)
     with pytest.raises(AssertionError):
-        agrees_with_mpmath(SPINS[name], [Fraction(7, 3)])
+        check(SPINS[name])
 
 
 # Zeros, moduli and frames
