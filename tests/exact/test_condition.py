@@ -40,15 +40,11 @@ LOADED_EULER = sample_scene(RigidBody(TENSOR, MOMENT), "attitude")
 LOADED_KIRCHHOFF = sample_scene(LOADED, "attitude", "centre")
 
 
-def times(*entries: float | str) -> list[Fraction]:
-    return list(vector(*entries))
-
-
 def test_axisymmetric_body() -> None:
     """For moments (J, J, S) the transition matrix is a rotation and a shear, known exactly."""
     body = RigidBody(diagonal(vector(1, 1, 2)))
     spinning = sample_scene(body, start=Spin(vector("0.6", "0.8", "0.5")))
-    instants = times(0, "0.7", 3, 40)
+    instants = vector(0, "0.7", 3, 40)
     flow = transition(spinning, instants)
     momentum = TaylorSolution(spinning).motion(instants, 30)["omega"].astype(float) * [1, 1, 2]
     expected = [np.linalg.norm(_shear(momentum[0], float(instant)), 2) for instant in instants]
@@ -69,7 +65,7 @@ def _shear(momentum: Array, time: float) -> Array:
 
 def test_place_moves_with_the_path() -> None:
     """A turn stays a turn, a shift a shift, and a turn at the start swings c by |c - c(0)|."""
-    instants = times(0, "0.5", 2)
+    instants = vector(0, "0.5", 2)
     flow = transition(LOADED_KIRCHHOFF, instants)
     path = TaylorSolution(LOADED_KIRCHHOFF).motion(instants, 30)["centre"].astype(float)
     distances = np.linalg.norm(path - path[0], axis=1)
@@ -92,7 +88,7 @@ def test_growth_beside_an_unstable_rotation() -> None:
     steady = sample_scene(body, start=Spin(vector(0, 1, 0)))
     # H2 = 2; H1' = H2 (K3 - K2) H3, H3' = H2 (K2 - K1) H1, so rate^2 = 4 (1/6)(1/2) = 1/3.
     rate = np.sqrt(1 / 3)
-    norms = transition(steady, times(0, 10, 80)).norms("momentum", "momentum")
+    norms = transition(steady, vector(0, 10, 80)).norms("momentum", "momentum")
     for i, time in ((1, 10.0), (2, 80.0)):
         block = [
             [np.cosh(rate * time), -np.sinh(rate * time) / (3 * rate)],
@@ -107,7 +103,7 @@ def test_growth_beside_an_unstable_rotation() -> None:
 def test_a_body_at_rest() -> None:
     """At rest momentum stays as it is, and turns the body by K per unit of momentum and time."""
     resting = sample_scene(RigidBody(TENSOR), "attitude", start=Spin(vector(0, 0, 0), QUATERNION))
-    flow = transition(resting, times(0, 2, 6))
+    flow = transition(resting, vector(0, 2, 6))
     inverse_inertia = np.array(inverse(TENSOR), dtype=float)
     stiffest = np.linalg.norm(inverse_inertia, 2)
     # Perturbed by 10^-12 of a unit, the body turns by as much, and the norms are off by as much.
@@ -131,7 +127,7 @@ def test_variational_equations_agree_with_differences(start: Scene) -> None:
 
     To four digits: that is what the variational equations are integrated to.
     """
-    instants = times(0, "0.5", "1.25", 4)
+    instants = vector(0, "0.5", "1.25", 4)
     steps = integrated(start, instants)
     assert steps is not None
     by_steps = Path(start, instants, steps)
@@ -206,7 +202,7 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     turned = product(product(turn, diagonal(vector(1, 2, 3))), transpose(turn))
     near = vector("1e-40", 1, "1e-40")
     saddle = sample_scene(RigidBody(turned), start=Spin(apply(turn, near)))
-    assert integrated(saddle, times(0, 250)) is None
+    assert integrated(saddle, vector(0, 250)) is None
 
 
 # The choice of times.

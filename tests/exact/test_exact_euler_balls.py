@@ -46,10 +46,6 @@ def scene(spin: FreeSpin) -> Scene:
     return one_instant(RigidBody(spin.inertia), Spin(spin.omega, TILTED), "attitude")
 
 
-def times(*entries: int | str | Fraction) -> list[Fraction]:
-    return [Fraction(entry) for entry in entries]
-
-
 def agrees_with_mpmath(spin: FreeSpin, at: Sequence[Fraction]) -> None:
     """The proven balls meet the other closed form, and are as narrow as was asked."""
     motion = enclosed(scene(spin)).motion(at, DIGITS)
@@ -67,7 +63,7 @@ def agrees_with_mpmath(spin: FreeSpin, at: Sequence[Fraction]) -> None:
 @pytest.mark.parametrize("name", SPINS)
 def test_agrees_with_mpmath(name: str) -> None:
     """Weierstrass's functions in the time itself, and AGM with R_J, lead to the same motion."""
-    agrees_with_mpmath(SPINS[name], times(0, "7/3", "-5/2", 31, LONG))
+    agrees_with_mpmath(SPINS[name], vector(0, "7/3", "-5/2", 31, LONG))
 
 
 # An orbit and its times, which are far out.
@@ -98,13 +94,13 @@ FAR = {
 def test_extremes_agree_with_mpmath(name: str) -> None:
     """So they do next to the separatrix, the axes and symmetric bodies, for thin rods and long times."""
     spin, *at = FAR[name]
-    agrees_with_mpmath(spin, times(*at))
+    agrees_with_mpmath(spin, vector(*at))
 
 
 @pytest.mark.parametrize("name", by_turns(SPINS, 8))
 def test_agrees_with_taylor(name: str) -> None:
     """The Taylor route, which knows no elliptic function, finds the same motion."""
-    at = times("7/3", "-5/2", 11)
+    at = vector("7/3", "-5/2", 11)
     motion = enclosed(scene(SPINS[name])).motion(at, 40)
     assert overlap(motion, TaylorSolution(scene(SPINS[name])).motion(at, 40))
 
