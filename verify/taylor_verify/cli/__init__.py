@@ -21,6 +21,7 @@ from taylor_verify.cli.streams import (
     say,
     stdout_reserved,
     tell,
+    tell_runner,
 )
 from taylor_verify.records.escapes import one_line
 
@@ -92,7 +93,11 @@ def _refused(lines: Sequence[str], arguments: Sequence[str]) -> int:
 
 
 def _print_faults(lines: Sequence[str], arguments: Sequence[str]) -> None:
-    # Options may not have been read: it is the words of the call that ask for a document.
+    # Options may not have been read: it is the words of the call that ask for an annotation or a document.
+    if lines and "--github" in arguments:
+        from taylor_verify.words.annotations import fault_line
+
+        tell_runner(fault_line(lines))
     if lines and "--json" in arguments:
         faults = [*map(one_line, lines)]
         print_out(as_json_text({"error": "\n".join(faults), "faults": faults}))

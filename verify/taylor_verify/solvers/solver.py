@@ -13,6 +13,8 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 # What acts on a body, in the words of a sentence.
+# Characters of an error's text that a verdict holds.
+_LONGEST: Final = 2000
 _ACTING: Final = {
     "rotor": "wheels",
     "moment": "a moment",
@@ -103,6 +105,8 @@ def not_started(reason: str) -> Trajectory:
 def raised(error: BaseException) -> Trajectory:
     """Return the trajectory of a solver that ended with an error, a `sys.exit` included."""
     detail = f"{type(error).__name__}: {error}".removesuffix(": ")
+    if len(detail) > _LONGEST:
+        detail = f"{detail[:_LONGEST]} ... ({len(detail)} characters)"
     return Trajectory(Outcome.RAISED, detail=detail)
 
 

@@ -1,6 +1,6 @@
 """Verdicts as GitHub annotations, which are lines in the output of a step.
 
-    ::error title=...::...     fail, and a regression
+    ::error title=...::...     fail, a regression, and a call that came to nothing
     ::warning title=...::...   undecided, vacuous, refused: the step is red by its exit status
     ::notice title=...::...    unavailable, and vacuous as --partial asks
 
@@ -36,6 +36,11 @@ def annotation_lines(
         if case.counted is not Status.PASS:
             levels[_HARMLESS if case.is_harmless else _LEVELS[case.counted]].append(case)
     return [line for level, level_cases in levels.items() for line in _of_level(level, level_cases)]
+
+
+def fault_line(lines: Iterable[str]) -> str:
+    """Return the line on a call that came to nothing, for its faults."""
+    return _line("error", {"title": "taylor-verify was called with faults"}, "\n".join(lines))
 
 
 def _of_level(level: str, level_cases: list[Case]) -> Iterator[str]:

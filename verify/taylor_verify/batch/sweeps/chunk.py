@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
-from taylor_verify.batch.failure import fault
+from taylor_verify.batch.failure import failing, fault
 from taylor_verify.batch.finished_jobs import package_digest
 from taylor_verify.batch.sweeps.questions import Question, Questions
 from taylor_verify.chain import judge_scene
@@ -16,6 +16,7 @@ from taylor_verify.records.reason import Cause, Reason, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import as_solver
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -60,7 +61,12 @@ class Judged(NamedTuple):
 
 
 def judge(chunk: Chunk) -> Judged:
-    """Solve and judge a chunk. A scene that breaks the code is an undecided row, and stops no other."""
+    """Solve and judge a chunk. A scene that breaks the code is an undecided row, and stops no other.
+
+    Raises Failed where there is no solver of that name, such as a module that a worker lacks.
+    """
+    with failing(f"{chunk}, where it is judged", ValueError):
+        as_solver(chunk.solver)
     asked = chunk.questions.questions(chunk.first, chunk.stop)
     rows = [_row(question, verdict) for question in asked for verdict in _verdicts(question, chunk)]
     names = (*COLUMNS, *(DRAWN + name for name in chunk.questions.drawn))
