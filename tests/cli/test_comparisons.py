@@ -23,6 +23,7 @@ from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.status import Status
 from taylor_verify.records.sums import line
 from taylor_verify.records.verdict import Verdict, exit_status
+from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.words.annotations import annotation_lines
 from taylor_verify.words.case import Remark
 from taylor_verify.words.junit import junit
@@ -196,7 +197,8 @@ def test_a_row_that_shows_nothing_is_never_green(status: Status) -> None:
 def test_a_part_that_the_caller_accepts_and_a_missing_format_count_for_nothing() -> None:
     """The row `complete` of --partial, and a rung that this machine lacks beside one that it has."""
     waived = row(quantity="complete", verdict=Status.VACUOUS, at=None)
-    absent = row(rung="f80", verdict=Status.UNAVAILABLE, at=None)
+    lacks = {"verdict": Status.UNAVAILABLE, "outcome": Outcome.NO_FORMAT.value}
+    absent = row(rung="f80", **lacks, at=None)
     assert status_alone([row()], [row(), waived]) == 0
     assert status_alone([row(), row(rung="f80")], [row(), absent]) == 0
     assert status_alone([row(rung="f80")], [absent]) == 3

@@ -171,6 +171,11 @@ def _trajectory(options: argparse.Namespace, folder: Path) -> Answer:
 
     if options.board is None:
         raise WrongCall("expected --board with --row, got none @ --board")
+    file = None
+    if options.out is not None:
+        if Path(options.out).suffix != ".json":
+            raise WrongCall(f"expected a name that ends in .json, got {options.out!r:.60} @ --out")
+        file = writable_file(options.out, "--out")
     with wrong_calls():
         answers = own.every_answer(folder, options.board)
     text = options.row
@@ -187,11 +192,8 @@ def _trajectory(options: argparse.Namespace, folder: Path) -> Answer:
         answer = _made_again(answer, options.board)
     columns = answer.columns()
     check = f"taylor-verify check FILE --scene {answer.row.scene} --rung {answer.row.rung}"
-    if options.out is None:
+    if file is None:
         return Answer(PASS, columns, answer.to_text, [check])
-    if Path(options.out).suffix != ".json":
-        raise WrongCall(f"expected a name that ends in .json, got {options.out!r:.60} @ --out")
-    file = writable_file(options.out, "--out")
     file.write_text(answer.to_text(), encoding="utf-8")
     return Answer(
         PASS, {"written": [str(file)]}, lambda: str(file), [check.replace("FILE", str(file))]

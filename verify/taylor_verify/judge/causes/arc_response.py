@@ -1,4 +1,4 @@
-"""What other rates change at the ends of arcs, to first order: one evaluation in place of a flow.
+"""Response of arcs to other rates, to first order: one evaluation in place of a flow.
 
 Rates that differ by d(t) along the arc of the right equations change its end by the integral of
 Phi(end, t) d(t), where Phi is the flow of small differences. Gauss's three points give the integral.
