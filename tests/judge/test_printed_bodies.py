@@ -102,3 +102,9 @@ def test_impulses_that_no_matrix_makes_are_of_no_other_body() -> None:
     growing = 1 + 0.01 * np.arange(len(TIMES))[:, None]
     causes = judged(momenta=np.hstack([MOMENTA[:, :3] * growing, MOMENTA[:, 3:]])).causes
     assert not any("another body" in cause.sentence for cause in causes)
+
+
+def test_velocities_of_which_one_is_zero_are_of_no_other_body() -> None:
+    """No mass matrix makes them: an entry that no row tells is no number, and no cause."""
+    velocities = MOMENTA @ np.linalg.inv(with_entry(0, 4, 0.9)).T * [1, 1, 1, 1, 1, 0]
+    assert not judged(velocities=velocities).causes

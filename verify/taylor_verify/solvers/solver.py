@@ -12,9 +12,9 @@ from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
-# What acts on a body, in the words of a sentence.
 # Characters of an error's text that a verdict holds.
 _LONGEST: Final = 2000
+# What acts on a body, in the words of a sentence.
 _ACTING: Final = {
     "rotor": "wheels",
     "moment": "a moment",

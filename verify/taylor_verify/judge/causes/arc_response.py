@@ -65,20 +65,22 @@ class ArcResponse:
     arcs: Arcs
     count: int
 
-    def to(self, equations: Equations) -> Floats:
-        """Return the change of the ends by equations, (sets, components, arcs)."""
-        right, (times, states, _) = self.arcs.answer.right, self._points
-        self.arcs.answer.budget.spend(equations.price(self.count, equations.sets * len(times)))
-        more = equations.rates(times, states) - right.rates(times, states)
-        more = more.reshape(*more.shape[:2], len(_POINTS), -1)
-        return np.asarray(np.einsum("kica,sika->sca", self._weighed, more))
-
     def compared(self, equations: Equations) -> Floats:
-        """Return the change of the defects by equations, (components, arcs)."""
-        change, n = self.to(equations)[0, : self.arcs.compared], self.arcs.answer.n
-        change[:n] /= self._sizes[:n, 0]
-        change[n + 4 :] /= self.arcs.answer.reach
-        return change
+        """Return the change of the defects by one set of equations, (components, arcs)."""
+        answer, (times, states, _) = self.arcs.answer, self._points
+        answer.budget.spend(equations.price(self.count, len(times)))
+        more = (equations.rates(times, states) - self._of_right)[0]
+        points = more.reshape(len(more), len(_POINTS), -1)
+        change = np.einsum("kica,ika->ca", self._weighed, points)[: self.arcs.compared]
+        change[: answer.n] /= answer.sizes[:, None]
+        change[answer.n + 4 :] /= answer.reach
+        return np.asarray(change)
+
+    @cached_property
+    def _of_right(self) -> Floats:
+        """The rates of the right equations at the points."""
+        times, states, _ = self._points
+        return self.arcs.answer.right.rates(times, states)
 
     @cached_property
     def _weighed(self) -> Floats:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -9,6 +11,7 @@ import numpy as np
 from taylor_verify.judge.causes.float_answer import Answer, velocities_of
 from taylor_verify.judge.causes.lateness import at_other_times, true_states
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.settled import FIT_ROWS
 
 # A part of the time in which a motion changes by its own size.
 _BRIEF: Final = 0.03
@@ -19,16 +22,25 @@ _OFF_PACE: Final = 1e-4
 _OFF_ROUNDINGS: Final = 30.0
 
 
-def is_on_a_line(answer: Answer) -> bool:
-    """Return True if the velocities change along one direction."""
-    v = answer.truth.v / answer.sizes
-    singular = np.linalg.svd(v - v[0], compute_uv=False)
-    return bool(singular[1] <= _ON_A_LINE * singular[0])
+@dataclass(frozen=True)
+class Shape:
+    """The shape of the true motion beside an answer, whose ``floor`` is the rounding of the file."""
 
+    answer: Answer
+    floor: float
 
-def has_one_pace(answer: Answer, floor: float) -> bool:
-    """Return True if a method of order two changes the pace of the motion alone."""
-    return off_pace(answer) < max(_OFF_PACE, _OFF_ROUNDINGS * floor)
+    @cached_property
+    def is_on_a_line(self) -> bool:
+        """True if the velocities change along one direction."""
+        v = self.answer.truth.v / self.answer.sizes
+        singular = np.linalg.svd(v - v[0], compute_uv=False)
+        return bool(singular[1] <= _ON_A_LINE * singular[0])
+
+    @cached_property
+    def has_one_pace(self) -> bool:
+        """True if a method of order two changes the pace of the motion alone."""
+        few = self.answer.thinned(FIT_ROWS)
+        return off_pace(few) < max(_OFF_PACE, _OFF_ROUNDINGS * self.floor)
 
 
 def off_pace(answer: Answer) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from taylor_verify.judge.causes.actuator_limits import new_limits
 from taylor_verify.judge.causes.arc_response import sketched_rests
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
-from taylor_verify.judge.causes.blind_motions import has_one_pace, is_on_a_line
+from taylor_verify.judge.causes.blind_motions import Shape
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
 from taylor_verify.judge.causes.changed_equations import Changes
@@ -42,7 +42,7 @@ from taylor_verify.judge.causes.other_bodies import (
 from taylor_verify.judge.causes.pairs import Linear, likely_pairs, pairs_with_a_fault
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, ROUNDINGS, whole
 from taylor_verify.judge.causes.replays import replays, steps_beside
-from taylor_verify.judge.causes.settled import FAIR, FEW, FIT_ROWS, NOTHING, PAIR, Choice
+from taylor_verify.judge.causes.settled import FAIR, FEW, NOTHING, PAIR, Choice
 from taylor_verify.judge.causes.stepped_arcs import stepped
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
@@ -146,6 +146,7 @@ class Search:
         self.motion_of_faults = motion_of_faults or motion
         self.floor = evidence.floor
         self.choice = Choice(answer, groups, self.floor)
+        self._shape = Shape(answer, self.floor)
         # A fault without numbers that leaves nothing of the whole answer, whatever it leaves of the arcs.
         self.proven = ""
         # What each fault without numbers leaves of the defects, nearly.
@@ -180,7 +181,7 @@ class Search:
             is_exact = any(map(self._is_exact, candidates))
             if not is_exact and (cause := self._over_kinks(of_group, candidates)):
                 return cause
-            is_blind = is_on_a_line(self.answer) or any(map(self._is_pace, candidates))
+            is_blind = self._shape.is_on_a_line or any(map(self._is_pace, candidates))
             if not has_methods and (is_blind or not is_exact):
                 candidates += replays(self.answer, min(stride, _LONGEST))
             has_methods = True
@@ -256,7 +257,7 @@ class Search:
         Such a motion, as a decay, does not tell the error of a method from a number that sets the pace.
         """
         is_clock = candidate.kind == "clock" and self._is_exact(candidate)
-        return is_clock and has_one_pace(self.answer.thinned(FIT_ROWS), self.floor)
+        return is_clock and self._shape.has_one_pace
 
     def _telling(self, pairs: list[Candidate], is_blind: bool) -> list[Candidate]:
         """Return the pairs that a method does not imitate: it changes the pace, and damps, at once."""

@@ -51,7 +51,7 @@ def printed_by_another_body(answer: Answer) -> Cause | None:
     def left(factors: Floats) -> dict[str, float] | None:
         """Return what v by some factors leaves; None if it is too much."""
         errors = answer.errors(Motion(answer.truth.v @ factors.T))
-        if any(np.max(errors[name]) > least[name] for name in answer.groups):
+        if not all(np.max(errors[name]) <= least[name] for name in answer.groups):
             return None
         return {each: float(np.max(errors[each])) / answer.worst[each] for each in answer.moving}
 
