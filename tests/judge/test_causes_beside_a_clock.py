@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.caused_rows import RIGID, Array, Law, rigid, titles
+from builders.caused_rows import RIGID, Array, Law, causes, rigid, titles
 from builders.scenes import THREE_INSTANTS, text_of
 from builders.trajectories import QUATERNION, VECTORS, Columns, file_judgement, named, write_csv
 
@@ -227,3 +227,41 @@ def test_a_clock_that_drifts_is_named_where_the_attitude_shows_it(tmp_path: Path
     made = with_times(EVEN, EVEN - 1e-3 * EVEN + 1e-4 * EVEN**2, TRACKED)
     (title,) = titles(tmp_path, TRACKED, made)
     assert title.endswith("holds the motion at t -0.001 t +0.0001 t^2")
+
+
+@pytest.mark.parametrize(
+    ("written", "words"),
+    [(SUMS, ["times are a running sum in float32"]), (EVEN + 1e-7 * EVEN**2, [])],
+    ids=["sum", "as large"],
+)
+def test_a_sum_in_float32_is_named_where_the_rows_are_rounded_nearly_as_much(
+    written: Array, words: list[str], tmp_path: Path
+) -> None:
+    """The rounding of the rows hides a hundredth of the offsets, and the stamps are the sum exactly."""
+    made = with_times(written, EVEN)
+    rounded = {name: [round(x, 8) for x in made[name]] for name in VECTORS["omega"]}
+    assert titles(tmp_path, SPIN, made | rounded) == words
+
+
+HEAVY = np.diag([3.0, 2.0, 2.5, 1.5, 1.2, 0.9]) + 0.2 * np.eye(6)[::-1]
+FLUID = text_of(
+    {"mass_matrix": HEAVY.tolist()},
+    {"linear_impulse": [1, -0.6, 0.8], "angular_impulse": [0.5, 0.9, -0.4]},
+    *(8, 81),
+)
+
+
+@pytest.mark.parametrize(("clock", "words"), [(1 / 60, "clock = 0.0166667"), (1 / 7, "factor of")])
+def test_times_in_frames_are_nearer_than_a_factor_of_the_mass(
+    clock: float, words: str, tmp_path: Path
+) -> None:
+    """Momenta alone do not tell a heavier body from a slower clock, but for the number of its frames."""
+    times = np.arange(81) * 0.1
+    motion = solution(read(FLUID, "free")).motion([exact_value(t * clock) for t in times], 20)
+    asked = ("linear_impulse", "angular_impulse")
+    rows = [motion.quantities[name].astype(float) for name in asked]
+    names = [column for name in asked for column in VECTORS[name]]
+    made = named(("t", *names), np.c_[times, np.hstack(rows)])
+    (cause,) = causes(tmp_path, FLUID, made)
+    assert cause.sentence.startswith(words)
+    assert "not told apart from" in cause.sentence

@@ -47,7 +47,7 @@ _SETTLED: Final = 1e-11
 _COARSE: Final = 1e-3
 # Factors of a clock that is not nearly right.
 _CLOCKS: Final = (*np.geomspace(1e-3, 8, 60), 0.0)
-_FRAMES: Final = (10.0, 12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
+FRAMES: Final = (10.0, 12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
 # Beyond this factor arcs are so long that they take more steps, up to a limit.
 _LONG: Final = 3
 _MOST_STEPS: Final = 128
@@ -242,7 +242,7 @@ def by_factor(arcs: Arcs, family: Family, best: Fitted) -> Fitted:
         return best
     tried = [
         (float(np.linalg.norm(defects)), factor)
-        for factors, steps in ((_CLOCKS, max(arcs.steps, 4)), (_FRAMES, 32))
+        for factors, steps in ((_CLOCKS, max(arcs.steps, 4)), (FRAMES, 32))
         for defects, factor in zip(
             arcs.defects([{"clock": f} for f in factors], steps), factors, strict=True
         )

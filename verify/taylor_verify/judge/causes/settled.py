@@ -19,6 +19,7 @@ from taylor_verify.judge.causes.candidate import (
     may_explain,
     short,
 )
+from taylor_verify.judge.causes.distance_of_causes import distance
 from taylor_verify.judge.causes.fit import least_rest
 from taylor_verify.judge.causes.fitted_bodies import described
 from taylor_verify.judge.causes.float_answer import Answer, Motion
@@ -323,7 +324,7 @@ class Choice:
         alike = [p for p in proven if p.candidate.defects <= as_well]
         alike = self._by_frame(alike)
         # What the scene writes is nearer to its user than a term of the equations.
-        alike.sort(key=lambda each: self._nearness(each.candidate))
+        alike.sort(key=lambda each: distance(self.answer, each.candidate))
         first, shortened = alike[0], self._shortened(alike[0])
         best = shortened.candidate
         text, changes = described(self.answer, best)
@@ -353,7 +354,7 @@ class Choice:
         if not self._frame:
             return alike
         left = [max(proven.leaves.get(name, 1.0) for name in self._frame) for proven in alike]
-        most = max(BETTER * min(left), ROUNDINGS * self.answer.floor(self._frame))
+        most = max(BETTER * min(left), ROUNDINGS * self.answer.floor(self._frame), NOTHING)
         return [proven for proven, part in zip(alike, left, strict=True) if part <= most]
 
     def _explains_frame(self, proven: _Proven) -> bool:
@@ -383,16 +384,3 @@ class Choice:
             if np.all(np.abs(shorter - numbers) <= NOTHING * np.abs(numbers)):
                 return replace(proven, candidate=replace(candidate, numbers=shorter))
         return proven
-
-    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool, bool, bool, bool, int]:
-        """Return how far a candidate is from the text of the scene: one without a number is nearer.
-
-        What the scene does not have is farther, and a clock, which no equation has, and a factor of more
-        than one of its numbers. Of two numbers the one with fewer digits is nearer.
-        """
-        has_number = " = " in described(self.answer, candidate)[0]
-        is_written, is_clock = candidate.kind == WRITTEN, candidate.kind == "clock"
-        is_new = bool(candidate.count) and not np.any(candidate.family.right)
-        digits = sum(len(f"{number:.6g}") for number in candidate.numbers)
-        is_factor = not candidate.family.labels
-        return candidate.count, not is_written, is_new, has_number, is_clock, is_factor, digits

@@ -15,6 +15,7 @@ from taylor_verify.judge.causes.lateness import (
     true_states,
 )
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.proof import CAPS
 
 _ROUNDS: Final = 5
 _MOST_ROWS: Final = 6.0
@@ -25,6 +26,10 @@ _NEARER: Final = 0.1
 _LEAVES: Final = 1e-2
 _NEAR: Final = 1e-5
 _PATTERN: Final = 1e-3
+# Stamps that are a running sum in float32 may leave this, as no number is fitted; of rows at such times the
+# rounding may hide so much.
+_LEFT_BY_SUMS: Final = CAPS[0]
+_BLUR: Final = 0.03
 # Offsets are in proportion to time, or steps are equal, to these parts of the largest offset.
 _STRAIGHT: Final = 1e-2
 _EQUAL: Final = 0.1
@@ -32,6 +37,7 @@ _EQUAL: Final = 0.1
 _ON_A_LINE: Final = 1e-6
 # Times of a file may be rounded to so many decimals.
 _MOST_DECIMALS: Final = 6
+_SUMS: Final = "times are a running sum in float32"
 _SCATTER: Final = "times scatter"
 _DRIFTS: Final = "the clock drifts"
 _PACE: Final = "the pace changes smoothly"
@@ -43,14 +49,17 @@ def other_times(answer: Answer) -> Cause | None:
     """Return the cause of rows that are exact at other times; the factor of a clock is another question."""
     if answer.has_states:
         return None
-    late, left, is_line = _offsets(answer)
+    late, left, pace, is_line = _offsets(answer)
     units = {"attitude": 2.0, "centre": answer.reach}
     largest = max(worst / units.get(name, 1.0) for name, worst in answer.worst.items())
     noise = max(answer.roundings[name] / units.get(name, 1.0) for name in answer.worst)
     remains = float(np.max(left))
-    if not (remains <= max(_ROUNDINGS * noise, _NEAR * largest) and remains < _LEAVES * largest):
+    is_rounding = remains <= max(_ROUNDINGS * noise, _NEAR * largest)
+    if not (is_rounding and remains < _LEFT_BY_SUMS * largest):
         return None
-    words = _pattern(answer, late)
+    words = _pattern(answer, late, _ROUNDINGS * noise / max(pace, 1e-300))
+    if words != _SUMS and not remains < _LEAVES * largest:
+        return None
     is_telling = (answer.n == 6 or answer.file.q is not None) and not is_line
     of_rows = (_SCATTER, _DRIFTS, _PACE)
     if words is None or not answer.failed or (words.startswith(of_rows) and not is_telling):
@@ -60,10 +69,11 @@ def other_times(answer: Answer) -> Cause | None:
     return Cause(words, "stamps", leaves)
 
 
-def _offsets(answer: Answer) -> tuple[Floats, Floats, bool]:
+def _offsets(answer: Answer) -> tuple[Floats, Floats, float, bool]:
     """Return for each row the time from its stamp to that at which it is exact, and what is left there.
 
-    True if the compared states move on a line, on which every state is one of another time.
+    With the median of the rates of the compared states, in their sizes; True if these move on a line, on
+    which every state is one of another time.
     """
     right, parts = answer.right, {name: part_of(answer, name) for name in answer.error}
     z = true_states(answer, max(part.stop for part, _ in parts.values()))
@@ -86,7 +96,8 @@ def _offsets(answer: Answer) -> tuple[Floats, Floats, bool]:
         at = at_other_times(answer, z, late)
     paces = np.linalg.svd(slopes, compute_uv=False)
     is_line = len(paces) < 2 or bool(paces[1] < _ON_A_LINE * paces[0])
-    return late, np.linalg.norm((rows - at[0, compared]) / scale, axis=0), is_line
+    left = np.linalg.norm((rows - at[0, compared]) / scale, axis=0)
+    return late, left, float(np.sqrt(np.median(square))), is_line
 
 
 def _whole_rows(rows: Floats, true: Floats) -> int:
@@ -103,8 +114,11 @@ def _whole_rows(rows: Floats, true: Floats) -> int:
     return nearest if apart(nearest) < _NEARER * apart(0) else 0
 
 
-def _pattern(answer: Answer, late: Floats) -> str | None:
-    """Return the pattern of the offsets in words; None for a factor, which the equations explain."""
+def _pattern(answer: Answer, late: Floats, unsure: float) -> str | None:
+    """Return the pattern of the offsets in words; None for a factor, which the equations explain.
+
+    The offsets are known to so much, by the rounding of the rows.
+    """
     times, size = answer.times, float(np.max(np.abs(late)))
     spacing = float(np.median(np.diff(times)))
     if not size > 0:
@@ -118,7 +132,9 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
     return (
         _every_so_many(answer, late, size)
         or _decimals(times, late, size)
-        or _single_precision(times, times + late, size, abs(answer.stride))
+        or _single_precision(
+            times, times + late, size, min(unsure, _BLUR * size), abs(answer.stride)
+        )
         or _whole_steps(times - answer.begins, times + late - answer.begins, size)
         or _factor_or_jumps(answer, late, size, spacing)
     )
@@ -183,26 +199,36 @@ def _is_line(times: Floats, late: Floats, size: float) -> bool:
     return bool(np.max(np.abs(late - line(times))) < _STRAIGHT * size)
 
 
-def _single_precision(times: Floats, exact: Floats, size: float, every: int) -> str | None:
+def _single_precision(
+    times: Floats, exact: Floats, size: float, unsure: float, every: int
+) -> str | None:
     """Return the words for a running sum, of which these are every so many times, as far as printed."""
     digits = _digits_of(times)
     unit = 0.0 if digits is None else 10.0**-digits
-    blur = _PATTERN * size if unit > _EQUAL * size else max(_PATTERN * size, unit)
-    for equal, summed, words in (
-        (exact, times, "times are a running sum in float32"),
+    exactly = max(_PATTERN * size, 0.0 if unit > _EQUAL * size else unit)
+    equally, nearly = (max(exactly, min(unsure, part * size)) for part in (_EQUAL, _BLUR))
+    for equal, summed, (of_steps, of_sums), words in (
+        (exact, times, (equally, exactly), _SUMS),
         (
             times,
             exact,
+            (exactly, nearly),
             "the rows are those at a running sum of the step in float32, not at the times",
         ),
     ):
-        count = every * (len(times) - 1)
-        h = (equal[-1] - equal[0]) / count
-        sums = np.cumsum(np.full(count, np.float32(h)), dtype=np.float32).astype(float)
-        off = np.abs(summed[1:] - summed[0] - sums[every - 1 :: every])
-        if _are_equal_steps(equal, blur) and np.max(off) < blur:
+        h = np.float32((equal[-1] - equal[0]) / (every * (len(times) - 1)))
+        near = (
+            _off_sums(summed, np.nextafter(h, np.float32(way)), every) for way in (h, 0, np.inf)
+        )
+        if _are_equal_steps(equal, of_steps) and min(near) < of_sums:
             return words
     return None
+
+
+def _off_sums(summed: Floats, h: np.float32, every: int) -> float:
+    """Return how far numbers are from a running sum in float32, of which they are every so many."""
+    sums = np.cumsum(np.full(every * (len(summed) - 1), h), dtype=np.float32).astype(float)
+    return float(np.max(np.abs(summed[1:] - summed[0] - sums[every - 1 :: every])))
 
 
 def _whole_steps(times: Floats, exact: Floats, size: float) -> str | None:
