@@ -1,4 +1,4 @@
-"""How far a cause is from the text of the scene: of causes that explain as well the nearest is said."""
+"""Distance of a cause from the text of the scene: of causes that explain as well the nearest is said."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _EXACTLY: Final = 1e-5
 def distance(
     answer: Answer, candidate: Candidate
 ) -> tuple[int, bool, bool, bool, bool, bool, bool, int]:
-    """Return how far a candidate is from the text of the scene, as a key to sort by.
+    """Return the distance of a candidate from the text of the scene, as a key to sort by.
 
     Fewer numbers are nearer, and times that count frames, and what the scene writes. What it does not have
     is farther, and a number, and a clock, which no equation has, and a factor of more than one of its
