@@ -164,7 +164,7 @@ def causes(scene: Scene, columns: Columns) -> dict[str, str]:
     if scene.model == "kirchhoff":
         vectors = VECTORS["linear_impulse"] + VECTORS["angular_impulse"]
     v, q = (np.array([columns[name] for name in names]).T for names in (vectors, QUATERNION))
-    given = adopt(scene, rung("f64"), [Fraction(t) for t in columns["t"]]).given
+    given = adopt(scene, rung("f64"), tuple(map(Fraction, columns["t"]))).given
     noise = (2.0**-53 * np.max(np.abs(v), axis=0), 2.0**-53, 0.0)
     answer = _explained(given, Motion(v, steady_signs(q)), noise, len(v[0]) == 6)
     return {} if answer is None else {cause.name: cause.sentence for cause in answer.causes}
@@ -172,7 +172,7 @@ def causes(scene: Scene, columns: Columns) -> dict[str, str]:
 
 def explained_motion(scene: Scene, file: Motion, noise: float = 0.5e-10) -> Explained:
     """What is found of rows at the times of a scene, all of which failed, with so much noise."""
-    given = adopt(scene, rung("f64"), list(scene.clock.instants)).given
+    given = adopt(scene, rung("f64"), scene.clock.instants).given
     of_columns = np.full(file.v.shape[1], noise)
     answer = _explained(given, file, (of_columns, 0.0 if file.q is None else noise, 0.0))
     return answer

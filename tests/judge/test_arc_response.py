@@ -40,7 +40,8 @@ samples = 25
 
 def arcs_of(text: str) -> Arcs:
     """The arcs between the rows of the exact motion of another top, as an answer to TOP."""
-    scene, times = read(TOP, "top"), list(read(TOP, "top").clock.instants)
+    scene = read(TOP, "top")
+    times = scene.clock.instants
     motion = exact(read(text, "other"), times, 17).quantities
     turns = Rotation.from_matrix(motion["attitude"].astype(float)).as_quat(scalar_first=True)
     file = Motion(motion["omega"].astype(float), steady_signs(turns))

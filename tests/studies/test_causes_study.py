@@ -156,7 +156,7 @@ def test_loads_as_texts_and_as_plain_code_are_the_same() -> None:
     for sort in LOADED:
         body = any_sample(sort, np.random.default_rng([3, LOADED.index(sort)]))
         rows = right(body)
-        times = [Fraction(str(t)) for t in rows.times[:3]]
+        times = tuple(Fraction(str(t)) for t in rows.times[:3])
         given = adopt(body.scene, rung("f64"), times).given
         exact = ExactMotion(given, has_centre=body.n == 6).at([*given.clock.elapsed], False)
         assert np.max(np.abs(exact.v - rows.v[:3])) < 1e-10

@@ -151,7 +151,6 @@ class _Arcs(Enclosing):
         body = self._body_until(max((begins[k] + span for k, span in times.items()), key=abs))
         for number, span in times.items():
             own = self.own[number] if self.own else {}
-            # The frame counts from the start of its own arc.
             system = body.starting(self.starts[number], own).system()
             state = system.start_balls(begins[number])
             course = Course.of(system, state, bits, most_bits)

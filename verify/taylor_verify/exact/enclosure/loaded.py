@@ -11,10 +11,9 @@ omega = K (H - h): so no derivative of h is needed, which may have kinks.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from copy import copy
 from fractions import Fraction
-from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 from flint import arb, arb_mat
 
@@ -26,13 +25,16 @@ from taylor_verify.exact.enclosure.piece_tapes import PieceTapes
 from taylor_verify.exact.enclosure.rationals import rational_values
 from taylor_verify.exact.enclosure.system import Piece, System, Taken
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.numbers.rotation import rotation_matrix, rotation_rows
+from taylor_verify.numbers.rotation import conjugate, product, rotation_matrix, rotation_rows
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import VECTORS, Loads
 from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.scenes.loads.steps import text_with_address
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.scene import Scene
+
+# A turn since the start is a quaternion of any length.
+_NO_TURN: Final = (Fraction(1), Fraction(0), Fraction(0), Fraction(0))
 
 
 def posed(scene: Scene) -> System:
@@ -48,8 +50,7 @@ def body_of(scene: Scene) -> LoadedBody:
 class LoadedBody:
     """The tapes of one scene, each made when a motion comes to its piece of time.
 
-    ``orders`` are those of the rates of change that functions of the motion are wanted with. ``own`` are
-    the states of the scene's own at the start, by their names.
+    ``orders`` are those of the rates of change that functions of the motion are wanted with.
     """
 
     def __init__(
@@ -57,10 +58,11 @@ class LoadedBody:
         scene: Scene,
         loads: Loads,
         orders: int = 0,
-        own: Mapping[str, Vector] | None = None,
     ) -> None:
         self._scene, self._loads, self._orders = scene, loads, orders
-        self._own = {s.name: s.start for s in loads.states} if own is None else own
+        # The motion begins at a state, turned so since the scene's start, and with own states.
+        self._initial, self._turn = scene.initial, _NO_TURN
+        self._own: Mapping[str, Vector | None] = {s.name: s.start for s in loads.states}
         self._kind = kind_of(scene.body)
         self._layout = Layout(
             size=len(self._kind.state(scene.initial)),
@@ -73,13 +75,14 @@ class LoadedBody:
         self._tapes_from: dict[Fraction | None, PieceTapes] = {}
 
     def starting(self, initial: State, own: Mapping[str, Vector]) -> LoadedBody:
-        """Return the same body from another start.
+        """Return the same body from another start, with the same tapes: R_0 stays that of the scene.
 
-        Its tapes are shared unless something reads the attitude: then R_0 stands in them.
+        ``own`` are the states of the scene's own there, by their names.
         """
-        other = LoadedBody(replace(self._scene, initial=initial), self._loads, self._orders, own)
-        if not (self._loads.reads_attitude or self._layout.travels):
-            other._tapes, other._tapes_from = self._tapes, self._tapes_from
+        other = copy(self)
+        back = conjugate(self._scene.initial.attitude)
+        other._initial, other._turn = initial, tuple(product(back, initial.attitude))
+        other._own = own
         return other
 
     def system(self) -> System:
@@ -88,9 +91,9 @@ class LoadedBody:
         return System(
             pieces=self.piece,
             blocks=self._layout.blocks,
-            start=self.start,
+            start=self._start,
             framed=self._framed if self._scene.track else None,
-            begin=self._begin if loads.rotor else None,
+            begin=self._begin if loads.rotor or self._turn != _NO_TURN else None,
             exactly=self._exactly() if loads.held_values else None,
             own=self._layout.own,
             instants=loads.instants if loads.held_values else None,
@@ -99,15 +102,15 @@ class LoadedBody:
             moving=("the momentum",) if loads.rotor else self._kind.moving,
         )
 
-    @cached_property
-    def start(self) -> Vector:
-        """The state at the start, without the momentum of a rotor of texts."""
-        initial, layout = self._scene.initial, self._layout
+    @property
+    def _start(self) -> Vector:
+        """The state at the start, without the momentum of a rotor of texts, and its turn of any length."""
+        initial, layout = self._initial, self._layout
         start = self._kind.state(initial)
         if self._loads.rotor:
             start = self._kind.momentum(self._scene.body, start)
         if layout.turns:
-            start += (Fraction(1), Fraction(0), Fraction(0), Fraction(0))
+            start += self._turn
         if layout.travels:
             start += self._kind.centre(initial) or ()
         for state in layout.states:
@@ -115,8 +118,13 @@ class LoadedBody:
         return start
 
     def _begin(self, time: Fraction) -> list[arb]:
-        """The start in balls, with the momentum of the rotor at an elapsed time."""
-        start = balls(self.start)
+        """The start in balls, its turn of unit length, with the momentum of the rotor at a time."""
+        start, place = balls(self._start), self._layout.size
+        turn = self._layout.turn(start)
+        length = sum((e * e for e in turn), arb(0)).sqrt()
+        start[place : place + len(turn)] = [e / length for e in turn]
+        if not self._loads.rotor:
+            return start
         box = Box.about(start)
         wheels = Image(self._tapes_at(time, is_later=True).wheels, box, time).outputs()
         added = over_box(box, *wheels)
@@ -124,7 +132,7 @@ class LoadedBody:
 
     def _exactly(self) -> list[Any]:
         """The start in exact numbers; None for a component of H that is not rational."""
-        start: list[Any] = list(self.start)
+        start: list[Any] = list(self._start)
         if self._loads.rotor:
             tape = self._tapes_at(Fraction(0), is_later=True).wheels
             values = rational_values(tape, start, Fraction(0))

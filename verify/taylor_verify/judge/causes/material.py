@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.exact.conditioning.loaded import known
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.causes.basis import basis
 from taylor_verify.judge.causes.budget import Budget
@@ -24,9 +25,10 @@ from taylor_verify.judge.causes.quaternion_rows import matrices, steady_signs
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.meanings import readings, rotations
+from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.problem import Problem, adopt
-from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import Rung, rung
 from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -40,7 +42,8 @@ if TYPE_CHECKING:
 
 _WITH_TERMS: Final = frozenset({"rotor"})
 MOVING: Final = frozenset(chain(*MOMENTA.values(), VELOCITIES))
-_DIGITS: Final = 20
+# The digits of a judge of doubles.
+_DIGITS: Final = truth_digits(rung("f64").bits)
 # Rates of attitudes need as many rows.
 _FEWEST_ATTITUDES: Final = 20
 # Rates that are known to no more than this part tell no equation.
@@ -51,12 +54,15 @@ _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_200_000.0
 
 
 class ExactMotion:
-    """The exact motion of a scene with its attitude, and with its centre if it ``has_centre``."""
+    """The exact motion of a scene with its attitude, and with its centre if it ``has_centre``.
+
+    Where the judge has asked about the scene it is the judge's, from one run.
+    """
 
     def __init__(self, scene: Scene, has_centre: bool) -> None:
         self._scene = scene
-        track = frozenset({"attitude", *["centre"] * has_centre})
-        self._exact = solution(replace(scene, track=track))
+        track = scene.track | {"attitude", *["centre"] * has_centre}
+        self._exact = known(replace(scene, track=track), _DIGITS)
         self.has_closed_form = self._exact.route != "taylor"
 
     def at(self, elapsed: list[Fraction], has_momenta: bool) -> Motion:

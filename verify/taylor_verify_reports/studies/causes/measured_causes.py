@@ -110,7 +110,7 @@ def _named(kind: Kind, body: Sample, rows: Rows) -> Named:
     v, noise = printed(rows.v @ mass.T if has_momenta else rows.v, body.digits)
     q, of_q = printed(rows.q, body.digits)
     scene = body.scene
-    given = adopt(scene, rung("f64"), [Fraction(str(t)) for t in rows.times]).given
+    given = adopt(scene, rung("f64"), tuple(Fraction(str(t)) for t in rows.times)).given
     motion, unit, of_c = Motion(v, steady_signs(q)), 2 * float(np.max(of_q)), np.zeros(3)
     if kind.has_centre and rows.c is not None:
         c, of_c = printed(rows.c, body.digits)
