@@ -25,7 +25,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.settings import at_tolerance
+from taylor_verify.solvers.taylor.settings import named
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.accuracy import Accuracy, Truth
 from taylor_verify.tradeoff.attainability import least_error
@@ -53,7 +53,7 @@ class Scripted(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if self.outcome is not Outcome.FINISHED:
             return Trajectory(self.outcome, seconds=self.seconds)
-        solver = at_tolerance(self.tolerance) if self.tolerance else Taylor()
+        solver = named(f"taylor?tol={self.tolerance}") if self.tolerance else Taylor()
         made, times = solver.solve(problem), mp.mpf(self.factor)
         return replace(
             made,
@@ -189,7 +189,7 @@ def test_a_family_is_not_set_finer_than_patience_has_it(scene: Scene) -> None:
 )
 def test_errors_are_the_judges(name: str, states: set[str]) -> None:
     """The achieved error and drift of a point are those that the judge finds, each quantity apart."""
-    scene, solver = asked_at(name, 0, 1, 2, 3), at_tolerance("1e-6")
+    scene, solver = asked_at(name, 0, 1, 2, 3), named("taylor?tol=1e-6")
     (p,) = trade_off(scene, [setting_of(solver)], repeats=1).points
     verdicts = {v.quantity: v for v in taylor_verify.run(scene, solver, "f64").verdicts}
     assert set(p.accuracy.max) == states
@@ -229,7 +229,7 @@ class Fitted(Solver):
 
     def solve(self, problem: Problem) -> Trajectory:
         at_home = problem.scene.initial == self.own.initial
-        solver = Taylor() if at_home else at_tolerance("1e-2")
+        solver = Taylor() if at_home else named("taylor?tol=1e-2")
         return replace(solver.solve(problem), seconds=1e-6)
 
 

@@ -70,7 +70,7 @@ def test_a_picture_is_drawn_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
             raise KeyboardInterrupt
         return f"<svg>{picture.stem}</svg>"
 
-    monkeypatch.setattr(site_work, "dumps", lambda picture: picture.stem.encode())
+    monkeypatch.setattr(pages, "dumps", lambda picture: picture.stem.encode())
     monkeypatch.setattr(pages, "_svg", svg)
     with pytest.raises(KeyboardInterrupt):
         pages._drawn(PICTURES, stored)

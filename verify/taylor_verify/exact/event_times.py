@@ -19,7 +19,7 @@ from taylor_verify.exact.enclosure.loaded import LoadedBody
 from taylor_verify.exact.enclosure.operations import Domain
 from taylor_verify.exact.enclosure.rationals import rational_values
 from taylor_verify.exact.enclosure.roots import Zero, zeros
-from taylor_verify.exact.enclosure.stopping import Coarse, Unreached
+from taylor_verify.exact.enclosure.stopping import Coarse, Unreached, reaching
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.printed import number_with_digits
 from taylor_verify.exact.solution import Unsettled
@@ -149,11 +149,7 @@ def events_of(scene: Scene, text: str, until: Fraction, digits: int) -> Events:
 
 def system(scene: Scene, loads: Loads, elapsed: Fraction, orders: int) -> System:
     """The equations of a scene with functions of its motion, as far as a time. Raises Unreached."""
-    try:
-        further = loads.reaching(elapsed)
-        _ = further.switches
-    except ValueError as fault:
-        raise Unreached(str(fault), elapsed) from None
+    further = reaching(loads, elapsed)
     return LoadedBody(replace(scene, track=frozenset()), further, orders).system()
 
 

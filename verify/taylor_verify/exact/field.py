@@ -11,7 +11,7 @@ from typing import Any, Final, final
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.lowering import Lowering
 from taylor_verify.exact.enclosure.operations import Time
-from taylor_verify.exact.enclosure.stopping import Unreached
+from taylor_verify.exact.enclosure.stopping import reaching
 from taylor_verify.exact.enclosure.system import Piece, System
 from taylor_verify.exact.enclosure.tape import Graph, Tape
 from taylor_verify.exact.enclosure.walk import Row
@@ -30,6 +30,7 @@ class Field(Proving):
     """The motion of the continuous states of loads without a body, each a block of its own."""
 
     loads: Loads
+    is_one_course = True
 
     @property
     def names(self) -> Sequence[str]:
@@ -48,22 +49,11 @@ class Field(Proving):
         }
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        system = self._system_until(max(times.values(), key=abs))
+        loads = reaching(self.loads, max(times.values(), key=abs))
+        system = _system(loads, self._tapes)
         course = Course.of(system, system.start_balls(), bits, most_bits)
         course = replace(course, begin=self.loads.origin, most_steps=_MOST_STEPS)
         yield from rows_of(course, times)
-
-    def _before(self, times: Times, unreached: Fraction) -> Times:
-        return {place: t for place, t in times.items() if abs(t) < abs(unreached)}
-
-    def _system_until(self, time: Fraction) -> System:
-        """The equations as far as an elapsed time; stairs of floor are listed so far."""
-        try:
-            loads = self.loads.reaching(time)
-            _ = loads.switches
-        except ValueError as fault:
-            raise Unreached(str(fault), time) from None
-        return _system(loads, self._tapes)
 
     @cached_property
     def _tapes(self) -> dict[Any, Tape]:

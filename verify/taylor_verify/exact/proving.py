@@ -54,6 +54,8 @@ class Proving(Solution):
 
     route = "taylor"
     regime = NO_CLOSED_FORM
+    is_one_course = False
+    """True where a nearer time is reached on the way to every later one."""
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
         """A row of balls for the place of each time, at ``bits`` bits, which are the ambient precision.
@@ -77,8 +79,9 @@ class Proving(Solution):
         return ()
 
     def _before(self, times: Times, unreached: Fraction) -> Times:
-        """The times on one side of the start that are reached without this one: none, unless stated."""
-        return {}
+        """The times on one side of the start that are reached without this one."""
+        nearer = {place: t for place, t in times.items() if abs(t) < abs(unreached)}
+        return nearer if self.is_one_course else {}
 
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:

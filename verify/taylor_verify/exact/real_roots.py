@@ -1,7 +1,8 @@
-"""Rational polynomials, and their real roots in balls."""
+"""Polynomials: their values, and the real roots of rational ones in balls."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -13,6 +14,14 @@ from taylor_verify.numbers.irrational import rational
 def polynomial(*coefficients: Fraction) -> fmpq_poly:
     """Return the polynomial of these coefficients, the constant one first."""
     return fmpq_poly([rational(c) for c in coefficients])
+
+
+def value_of(coefficients: Sequence[Any], x: Any) -> Any:
+    """Return the polynomial at x in any numbers, by Horner's rule; the constant coefficient first."""
+    *rest, total = coefficients
+    for coefficient in reversed(rest):
+        total = total * x + coefficient
+    return total
 
 
 def real_roots(function: fmpq_poly) -> list[arb]:

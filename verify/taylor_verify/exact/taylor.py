@@ -15,7 +15,7 @@ from typing import Any, Final, final
 
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import LoadedBody, body_of
-from taylor_verify.exact.enclosure.stopping import MOST_STEPS, Unreached
+from taylor_verify.exact.enclosure.stopping import MOST_STEPS, reaching
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.proving import Proving, Size, SoFar, Times, rows_of
@@ -46,12 +46,8 @@ class Enclosing(Proving):
     def _body_until(self, time: Fraction) -> LoadedBody:
         """The body as far as an elapsed time; stairs of floor are listed so far."""
         loads = self.scene.body.loads
-        if loads is None or (further := loads.reaching(time)) is loads:
+        if loads is None or (further := reaching(loads, time)) is loads:
             return self._body
-        try:
-            _ = further.switches
-        except ValueError as fault:
-            raise Unreached(str(fault), time) from None
         return body_of(replace(self.scene, body=self.scene.body.with_loads(further)))
 
     def _rounding_bits(self, elapsed: Sequence[Fraction]) -> int:
@@ -97,15 +93,13 @@ class TaylorSolution(Enclosing):
     """The motion of any scene, free or loaded, in balls that are proven to contain it."""
 
     most_steps: int = MOST_STEPS
+    is_one_course = True
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
         system = self._body_until(max(times.values(), key=abs)).system()
         course = Course.of(system, system.start_balls(), bits, most_bits)
         course = replace(course, most_steps=self.most_steps, begin=self.scene.clock.start)
         yield from rows_of(course, times)
-
-    def _before(self, times: Times, unreached: Fraction) -> Times:
-        return {place: t for place, t in times.items() if abs(t) < abs(unreached)}
 
 
 def arcs(

@@ -1,4 +1,4 @@
-"""Vector products, quaternions and their rotations, in whatever numbers they are given.
+"""Scalar products, quaternions and their rotations, in whatever numbers they are given.
 
 A quaternion has its scalar first, and turns body axes to space axes: v -> q v q*/|q|^2.
 """
@@ -6,29 +6,17 @@ A quaternion has its scalar first, and turns body axes to space axes: v -> q v q
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any
 
 from flint import arb
 
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.tensors import Matrix, Vector
-
-Number = TypeVar("Number", int, Fraction, arb)
+from taylor_verify.numbers.tensors import Matrix, Number, Vector
 
 
 def scalar_product(p: Sequence[Number], q: Sequence[Number]) -> Number:
     """Return p . q of two vectors of three."""
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-
-
-def cross(p: Sequence[Number], q: Sequence[Number]) -> list[Number]:
-    """Return p x q."""
-    return [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ]
 
 
 def product(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:

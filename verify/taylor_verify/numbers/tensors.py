@@ -5,10 +5,11 @@ A vector is a tuple of Fractions, a matrix a tuple of rows. Nothing here rounds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import accumulate, pairwise
 from operator import mul
+from typing import TypeVar
 
 import flint
 
@@ -16,6 +17,7 @@ from taylor_verify.numbers.irrational import fraction, rational
 
 Vector = tuple[Fraction, ...]
 Matrix = tuple[Vector, ...]
+Number = TypeVar("Number", int, float, Fraction, flint.arb)
 
 _ZERO = Fraction(0)
 ZERO_VECTOR: Vector = (_ZERO,) * 3
@@ -44,7 +46,8 @@ def dot(a: Vector, b: Vector) -> Fraction:
     return sum((p * q for p, q in zip(a, b, strict=True) if p and q), _ZERO)
 
 
-def cross(a: Vector, b: Vector) -> Vector:
+def cross(a: Sequence[Number], b: Sequence[Number]) -> tuple[Number, Number, Number]:
+    """Return a x b, in whatever numbers."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 

@@ -114,11 +114,16 @@ def read(file: Path, kind: type[Document]) -> Document:
 def exact_document(file: Path) -> Any:
     """Return the JSON document in a file, its decimals as Decimal. Raises Refused."""
     content = read_bytes(file, "a JSON document", DOCUMENT)
+    return loaded(content, file, parse_float=Decimal, parse_int=_whole)
+
+
+def loaded(content: str | bytes, place: object, **parts: Any) -> Any:
+    """Return a JSON document whose ``parts`` are made as json.loads takes them. Raises Refused."""
     try:
-        return json.loads(content, parse_float=Decimal, parse_int=_whole)
+        return json.loads(content, **parts)
     except (ValueError, RecursionError) as error:
         reason = "brackets nested too deeply" if isinstance(error, RecursionError) else error
-        raise refusal("a JSON document", f"a fault in it: {reason}", file) from None
+        raise refusal("a JSON document", f"a fault in it: {reason}", place) from None
 
 
 def _whole(text: str) -> int | str:

@@ -298,6 +298,14 @@ class ImmersedBody(Body):
         return six if is_clebsch else None
 
 
+def rigid_mass_matrix(mass: Fraction, centre: Vector, inertia: Matrix) -> Matrix:
+    """Return M = [[m 1, -m [c]x], [m [c]x, I - m [c]x [c]x]] of (x, y) = M (U, Omega) without a fluid."""
+    c = tensors.cross_matrix(centre)
+    offset = tuple(tensors.scaled(-mass, row) for row in c)
+    angular = tuple(map(tensors.plus, inertia, tensors.product(offset, c)))
+    return tensors.blocks(tensors.diagonal((mass,) * 3), offset, angular)
+
+
 @dataclass(frozen=True)
 class Clebsch:
     """T = p/2 (x1^2 + x2^2) + p'/2 x3^2 + q (x1 y1 + x2 y2) + q' x3 y3 + r/2 (y1^2 + y2^2) + r'/2 y3^2.

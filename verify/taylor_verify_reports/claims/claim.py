@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Final
 
 from taylor_verify_reports.claims.check import Check, Residual, Worded, measured
@@ -96,18 +96,7 @@ class Finding:
 
 
 # The fields that an entry of the ledger copies from the claim.
-_WORDS: Final = (
-    "id",
-    "statement",
-    "domain",
-    "method",
-    "correction",
-    "condition",
-    "lost",
-    "void",
-    "counterexample",
-    "remark",
-)
+_WORDS: Final = {field.name for field in fields(Claim)} & {f.name for f in fields(ClaimRow)}
 
 
 def examine(claim: Claim) -> Finding:

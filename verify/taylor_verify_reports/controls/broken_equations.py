@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any, Final
 
 from taylor_verify.models.algebra import add, apply, cross, minus
@@ -169,6 +170,8 @@ def _without_added_acceleration(problem: Problem) -> Problem:
     return problem.with_equations(equations)
 
 
+_in_water: Final = partial(Defect, scene=SCREW, twin=InGeneralForm())
+
 EQUATIONS: Final = (
     Defect(
         name="gyroscopic-sign",
@@ -239,9 +242,8 @@ EQUATIONS: Final = (
         why="x shrinks as it is to do, and R x with it, whatever the body turns like; y does not",
         recast=_with_damping_of_x_alone,
     ),
-    Defect(
+    _in_water(
         name="munk-moment-sign",
-        scene=SCREW,
         gate="y_space",
         passes=frozenset({"F2", "FG", "x_space"}),
         what="the added-mass couple x x U with its sign turned",
@@ -249,23 +251,19 @@ EQUATIONS: Final = (
         "not know it; energy and moment do",
         recast=in_21_coefficients,
         equations=_munk_moment_sign,
-        twin=InGeneralForm(),
         is_common=True,
     ),
-    Defect(
+    _in_water(
         name="no-added-mass-acceleration",
-        scene=SCREW,
         gate="FG",
         what="added mass in the couples, none in the acceleration",
         why="(U, Omega) answers to the mass of the body alone and conserves an energy made with "
         "that; the impulse, which has the fluid in it, is no longer a momentum",
         recast=_without_added_acceleration,
-        twin=InGeneralForm(),
         is_common=True,
     ),
-    Defect(
+    _in_water(
         name="uneven-coefficient",
-        scene=SCREW,
         gate="y3",
         passes=frozenset({"F2", "FG", "x_space", "y_space"}),
         what="one of two equal coefficients larger by 1e-6",
@@ -273,11 +271,9 @@ EQUATIONS: Final = (
         "being no body of revolution it has no y3",
         recast=in_21_coefficients,
         equations=_uneven,
-        twin=InGeneralForm(),
     ),
-    Defect(
+    _in_water(
         name="unturned-path",
-        scene=SCREW,
         gate="centre",
         passes=frozenset({"impulse", "attitude", "T", "F2", "FG", "y3", "x_space"}),
         what="the path of the centre summed from velocities in body axes",
@@ -285,7 +281,6 @@ EQUATIONS: Final = (
         "moment about a point of space",
         recast=in_21_coefficients,
         equations=_unturned_path,
-        twin=InGeneralForm(),
         is_common=True,
     ),
 )

@@ -151,62 +151,49 @@ def _turned(q: Vector, omega: Vector, h: float) -> Vector:
 
 
 _TWIN: Final = FixedStep(runge_kutta, "runge-kutta-4", "1.5 ms")
+# A defect of fixed steps of the brick, as published simulators have them.
+_common: Final = partial(Defect, scene=BRICK, twin=_TWIN, is_common=True)
 
 
 STEPPING: Final = (
-    Defect(
+    _common(
         name="explicit-gyroscopic-update",
-        scene=BRICK,
         gate="T",
         what="the gyroscopic term taken at the old state (explicit)",
         why="H x omega stands at right angles to H, and a step along a tangent ends outside the sphere: "
         "|H| and T rise in every step",
         solver=FixedStep(_explicit, "explicit-gyroscopic-update"),
-        twin=_TWIN,
-        is_common=True,
     ),
-    Defect(
+    _common(
         name="implicit-gyroscopic-update",
-        scene=BRICK,
         gate="T",
         what="the gyroscopic term taken at the new state (implicit)",
         why="the mirror image: every step ends inside the sphere, |H| and T fall",
         solver=FixedStep(partial(_explicit, iterations=_ITERATIONS), "implicit-gyroscopic-update"),
-        twin=_TWIN,
-        is_common=True,
     ),
-    Defect(
+    _common(
         name="energy-restored",
-        scene=BRICK,
         gate="H2",
         passes=frozenset({"T"}),
         what="an explicit step, the energy then restored by scaling",
         why="the energy is what is put there; the error is where it was",
         solver=FixedStep(_energy_restored, "energy-restored"),
-        twin=_TWIN,
-        is_common=True,
     ),
-    Defect(
+    _common(
         name="averaged-exponential",
-        scene=BRICK,
         gate="attitude",
         passes=frozenset({"omega", "T", "H2"}),
         what="the attitude by one rotation about the mean velocity of a step",
         why="turns about different axes do not commute: omega is of fourth order, the attitude only of "
         "second, and no quantity in body axes knows the attitude",
         solver=FixedStep(_averaged_exponential, "averaged-exponential"),
-        twin=_TWIN,
-        is_common=True,
     ),
-    Defect(
+    _common(
         name="float32-state",
-        scene=BRICK,
         gate="T",
         what="the state kept in float32 between steps",
         why="each step rounds to 24 bits, half a billion times as coarsely as to 53",
         solver=FixedStep(_in_single_precision, "float32-state"),
-        twin=_TWIN,
-        is_common=True,
     ),
     Defect(
         name="unbounded-step",

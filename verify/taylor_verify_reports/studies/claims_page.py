@@ -88,7 +88,7 @@ def _erratum(row: ClaimRow) -> list[str]:
         f"as transcribed: {_math(row.statement)}",
         f"correct: {_math(row.correction)}",
         f"counterexample: {prose(row.counterexample or '')}",
-        f"residual as transcribed {_short(row.residual.transcribed)}, corrected {_residual(row)}",
+        f"residual as transcribed {short(row.residual.transcribed)}, corrected {_residual(row)}",
         prose(row.remark or ""),
     ]
 
@@ -156,10 +156,11 @@ def _math(latex: str | None) -> str:
 
 def _residual(row: ClaimRow) -> str:
     """Return zero for an exact check, else its bound, which is the same on every machine."""
-    return "0, exactly" if row.bound == 0 else f"within {_short(row.bound)}"
+    return "0, exactly" if row.bound == 0 else f"within {short(row.bound)}"
 
 
-def _short(size: float | None) -> str:
+def short(size: float | None) -> str:
+    """Return two digits of a residual."""
     return "not finite" if size is None or not isfinite(size) else f"{size:.2g}"
 
 

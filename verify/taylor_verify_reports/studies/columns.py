@@ -1,11 +1,10 @@
-"""Tables and sheets by columns: a column is a heading and the function that makes a cell of a row."""
+"""Tables by columns: a column is a heading and the function that makes a cell of a row."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterable
+from typing import TypeVar
 
-from taylor_verify.words.csv_sheet import sheet
 from taylor_verify.words.markdown import table
 
 Row = TypeVar("Row")
@@ -16,9 +15,3 @@ def lay_out(columns: Columns[Row], rows: Iterable[Row]) -> str:
     """Return a Markdown table with a line for each row."""
     headings = [heading for heading, _ in columns]
     return table(headings, [[cell(row) for _, cell in columns] for row in rows])
-
-
-def csv_sheet(rows: Iterable[Mapping[str, Any]]) -> str:
-    """Return CSV with a line for each row; the columns are the keys of the first row."""
-    lines = list(rows)
-    return sheet(list(lines[0]) if lines else [], lines)

@@ -16,8 +16,11 @@ from taylor_verify.records.replacement import first_line, replace_files
 
 if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene
+    from taylor_verify_reports.studies.study import Progress
 
 Document = TypeVar("Document")
+# The maker of a scene's document, a function of a module.
+Make = Callable[["Scene"], dict[str, Any]]
 
 
 def made_by(study: str) -> dict[str, str]:
@@ -65,12 +68,13 @@ class Stored(Generic[Document]):
 class SceneDocuments:
     """JSON files below ``folder``, one for each scene; their first line names their ``maker``.
 
-    ``separators`` are those of json.dumps.
+    ``separators`` are those of json.dumps. ``form`` returns the keys and values of a document in its file.
     """
 
     folder: str
     maker: str
     separators: tuple[str, str] = (", ", ": ")
+    form: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda document: document
 
     def name(self, scene: str) -> str:
         """Return the path of a scene's document below the report."""
@@ -82,7 +86,7 @@ class SceneDocuments:
 
     def _text(self, document: Mapping[str, Any]) -> str:
         encoder = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=self.separators)
-        keys = {"made_by": self.maker, **document}
+        keys = {"made_by": self.maker, **self.form(document)}
         return (
             "{"
             + ",\n ".join(f"{json.dumps(k)}: {encoder.encode(v)}" for k, v in keys.items())
@@ -100,6 +104,14 @@ class SceneDocuments:
     def add(self, report: Path, documents: Iterable[Mapping[str, Any]]) -> list[Path]:
         """Write documents beside the stored ones, and return the files written. Raises OSError."""
         return list(replace_files(report, self.texts(documents)))
+
+    def add_made(
+        self, report: Path, make: Make, scenes: Sequence[str], progress: Progress
+    ) -> list[Path]:
+        """Make documents of scenes, and write each as it ends; return the files. Raises Failed, OSError."""
+        written: list[Path] = []
+        documents(make, scenes, progress, lambda one: written.extend(self.add(report, [one])))
+        return written
 
     def find(self, report: Path, scene: str) -> dict[str, Any] | None:
         """Return the document of a scene; None if there is none.
@@ -119,29 +131,29 @@ class SceneDocuments:
 
 
 def documents(
-    make: Callable[[Scene], dict[str, Any]],
+    make: Make,
     names: Sequence[str],
-    finished: Callable[[str], None],
-    keep: Callable[[dict[str, Any]], object] | None = None,
+    progress: Progress,
+    keep: Callable[[dict[str, Any]], object] = lambda document: None,
 ) -> list[dict[str, Any]]:
     """Return ``make(scene)`` for many scenes, in the order given.
 
-    As each scene ends, ``keep`` is called with its document and ``finished`` with its name. Raises Failed
-    for one that came to nothing.
+    As each scene ends, ``keep`` is called with its document. Raises Failed for one that came to nothing.
     """
 
     from taylor_verify.batch.failure import Failed
     from taylor_verify.batch.work import run_all
 
+    finished = progress.counting(len(names))
+
     def ended(name: str, document: dict[str, Any]) -> None:
-        if keep is not None:
-            keep(document)
+        keep(document)
         finished(name)
 
     return run_all(partial(document, make), names, ended=ended, raises=Failed)
 
 
-def document(make: Callable[[Scene], dict[str, Any]], name: str) -> dict[str, Any]:
+def document(make: Make, name: str) -> dict[str, Any]:
     """Return ``make(scene)`` for one scene. Raises Failed with its name."""
     from taylor_verify.batch.failure import failing
     from taylor_verify.exact.solution import Unsettled

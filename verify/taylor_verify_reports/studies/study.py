@@ -7,7 +7,7 @@ line, the report with its index, the pictures and the missing data are made by l
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -25,6 +25,15 @@ if TYPE_CHECKING:
     from taylor_verify.batch.judging import Progress as JobProgress
 
 Document = TypeVar("Document")
+
+
+def whole_number(text: str, least: int | None = None) -> int:
+    """Return the whole number of an option. Raises ValueError for other text, and for a smaller number."""
+    with suppress(ValueError):
+        if least is None or int(text) >= least:
+            return int(text)
+    limit = "" if least is None else f" of at least {least}"
+    raise ValueError(f"expected a whole number{limit}, got {text!r:.60}")
 
 
 class NotMeasured(ValueError):  # noqa: N818 (it names what did not happen)

@@ -6,7 +6,6 @@ import argparse
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
-from math import isfinite
 
 from rich.table import Table
 from rich.text import Text
@@ -16,6 +15,7 @@ from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.progress import working
 from taylor_verify_reports.claims.claim_row import ClaimRow, Verdict
 from taylor_verify_reports.claims.ledger import UnknownClaim, examined, find, missed
+from taylor_verify_reports.studies.claims_page import short
 
 _COLOURS = {
     Verdict.HOLDS: "green",
@@ -77,8 +77,8 @@ def _text(rows: Sequence[ClaimRow], in_full: bool) -> str:
         table.add_column(heading, justify="right", no_wrap=True)
     for row in rows:
         residual = row.residual
-        transcribed = "" if residual.transcribed is None else _short(residual.transcribed)
-        numbers = (_short(residual.statement), _short(row.bound), transcribed)
+        transcribed = "" if residual.transcribed is None else short(residual.transcribed)
+        numbers = (short(residual.statement), short(row.bound), transcribed)
         table.add_row(Text(row.id), _verdict(row.verdict), *numbers)
     page.console.print(table)
     page.line()
@@ -102,7 +102,3 @@ def _text(rows: Sequence[ClaimRow], in_full: bool) -> str:
 
 def _verdict(verdict: Verdict) -> Text:
     return Text(verdict.value, _COLOURS.get(verdict, "magenta"))
-
-
-def _short(size: float | None) -> str:
-    return "not finite" if size is None or not isfinite(size) else f"{size:.2g}"

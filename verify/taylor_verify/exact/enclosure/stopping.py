@@ -15,6 +15,7 @@ from taylor_verify.exact.enclosure.step import size_of
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers.precision import double_text, float_text, power_of_two
 from taylor_verify.records.faults import shown
+from taylor_verify.scenes.loads.loads import Loads
 
 MOST_STEPS: Final = 1_000_000
 # A box this large, as a power of two of its vector, is lost: further steps would shrink without end.
@@ -45,6 +46,16 @@ class Unreached(Unsettled):
     def __init__(self, because: str, time: Fraction, is_end: bool = False) -> None:
         super().__init__(because, is_end=is_end)
         self.time = time
+
+
+def reaching(loads: Loads, time: Fraction) -> Loads:
+    """The loads as far as an elapsed time; stairs of floor are listed so far. Raises Unreached."""
+    try:
+        further = loads.reaching(time)
+        _ = further.switches
+    except ValueError as fault:
+        raise Unreached(str(fault), time) from None
+    return further
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.elliptic import Landen, Triple
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.rotation import cross
+from taylor_verify.numbers.tensors import cross
 
 
 class PrincipalFrame(NamedTuple):

@@ -22,8 +22,8 @@ from taylor_verify.exact.gyrostat.curve_point import PointMap
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import ball
-from taylor_verify.numbers.rotation import cross, rotation_matrix, scalar_product
-from taylor_verify.numbers.tensors import Vector, dot
+from taylor_verify.numbers.rotation import rotation_matrix, scalar_product
+from taylor_verify.numbers.tensors import Vector, cross, dot
 
 
 class Pole(NamedTuple):

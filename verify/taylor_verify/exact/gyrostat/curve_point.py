@@ -79,9 +79,9 @@ def point_map(free: FreeGyrostat) -> PointMap:
         mu, nu = G1, cross(G1, osculating)
         first, constant, _ = _quotient(free, mu, nu)
         return OnCircle(free.momentum, mu, nu, 1 / first, -constant / first, free.double_root)
-    mu, nu = cross(_line(free), osculating), osculating
-    first, _, constant = _quotient(free, mu, nu)
-    return ByPlanes(free.momentum, mu, nu, 1 / first, -constant / first, free.double_root)
+    mu = cross(_line(free), osculating)
+    first, _, constant = _quotient(free, mu, osculating)
+    return ByPlanes(free.momentum, mu, osculating, 1 / first, -constant / first, free.double_root)
 
 
 def _line(free: FreeGyrostat) -> Vector:

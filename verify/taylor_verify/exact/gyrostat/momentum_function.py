@@ -24,6 +24,7 @@ from typing import Any, final
 
 from taylor_verify.exact.gyrostat.curve_point import OnCircle, point_map
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+from taylor_verify.exact.real_roots import value_of
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.rotation import scalar_product
 from taylor_verify.numbers.tensors import Vector, cross, dot
@@ -112,12 +113,13 @@ class WeierstrassForm:
     def at(self, P: Any, slope: Any) -> list[Any]:
         """G where p = P and p' = slope."""
         X, V = P - self.xb, slope + self.vb
-        below = 2 * _value(self.quartic, X)
+        below = 2 * value_of(self.quartic, X)
         components = zip(
             self.start, zip(*self.gamma, strict=True), zip(*self.kappa, strict=True), strict=True
         )
         return [
-            G + (V * _value(gamma, X) + _value(kappa, X)) / below for G, gamma, kappa in components
+            G + (V * value_of(gamma, X) + value_of(kappa, X)) / below
+            for G, gamma, kappa in components
         ]
 
 
@@ -155,11 +157,3 @@ def momentum_form(free: FreeGyrostat) -> WeierstrassForm | CircleForm:
 def _bracket(K: Any, a: Vector, b: Vector) -> Vector:
     """a x K b + b x K a."""
     return tensors.plus(cross(a, tensors.apply(K, b)), cross(b, tensors.apply(K, a)))
-
-
-def _value(polynomial: Sequence[Any], X: Any) -> Any:
-    """The polynomial at X, by Horner's scheme."""
-    *rest, total = polynomial
-    for coefficient in reversed(rest):
-        total = total * X + coefficient
-    return total

@@ -19,6 +19,7 @@ from functools import cached_property
 from typing import Final
 
 from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.kirchhoff import quartic
 from taylor_verify.exact.spectrum import Cubic
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector, cross, dot
@@ -94,20 +95,17 @@ class FreeGyrostat:
 
     @cached_property
     def invariants(self) -> tuple[Fraction, Fraction]:
-        """(g2, g3) of the quartic D = a0 s^4 + 4 a1 s^3 + 6 a2 s^2 + 4 a3 s + a4."""
+        """(g2, g3) of the quartic D = -n s^4 + b1 s^3 + b2 s^2 + b3 s + b4."""
         n, E, g = self.n, self.E, self.g
         S, c2, determinant = self.cubic
         # adj(K - s) = adj K - s (S - K) + s^2, and adj K = K^2 - S K + c2.
         gg, gKg = dot(g, g), dot(g, tensors.apply(self.K, g))
         gKKg = dot(g, tensors.apply(self.square, g))
-        a0 = -n
-        a1 = (n * S + E) / 4
-        a2 = -(n * c2 + E * S + gg) / 6
-        a3 = (n * determinant + E * c2 + S * gg - gKg) / 4
-        a4 = -E * determinant - (gKKg - S * gKg + c2 * gg)
-        g2 = a0 * a4 - 4 * a1 * a3 + 3 * a2**2
-        g3 = a0 * a2 * a4 + 2 * a1 * a2 * a3 - a2**3 - a0 * a3**2 - a1**2 * a4
-        return g2, g3
+        b1 = n * S + E
+        b2 = -(n * c2 + E * S + gg)
+        b3 = n * determinant + E * c2 + S * gg - gKg
+        b4 = -E * determinant - (gKKg - S * gKg + c2 * gg)
+        return quartic.invariants((-n, b1, b2, b3, b4))
 
     @cached_property
     def discriminant(self) -> Fraction:

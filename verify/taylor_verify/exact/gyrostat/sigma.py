@@ -34,13 +34,12 @@ from taylor_verify.exact.solution import Time
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.rotation import (
     conjugate,
-    cross,
     product,
     rotation_rows,
     scalar_product,
     turn,
 )
-from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector, dot
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector, cross, dot
 from taylor_verify.scenes.motion import Quaternion
 
 
@@ -189,7 +188,7 @@ class Azimuth:
         across = [p - along * q for p, q in zip(self._c, m3, strict=True)]
         length = scalar_product(across, across).rsqrt()
         m1 = [component * length for component in across]
-        return [m1, cross(m3, m1), m3]
+        return [m1, list(cross(m3, m1)), m3]
 
 
 class _Factor(NamedTuple):

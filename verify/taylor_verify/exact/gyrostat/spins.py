@@ -15,7 +15,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import Undecidable, balls, midpoint, sign
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.exact.real_roots import polynomial, real_roots
+from taylor_verify.exact.real_roots import polynomial, real_roots, value_of
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import ball, rational
@@ -93,8 +93,8 @@ def _is_narrow(value: arb, size: arb, bits: int) -> bool:
 
 def _regular(free: FreeGyrostat, mu: arb) -> arb:
     """s^2 of the spin with G = (K - mu)^-1 g."""
-    images = [_value(balls(row), mu) for row in zip(*_adjugate(free), strict=True)]
-    determinant = _value(balls(_determinant(free)), mu)
+    images = [value_of(balls(row), mu) for row in zip(*_adjugate(free), strict=True)]
+    determinant = value_of(balls(_determinant(free)), mu)
     return -_adjugate_form(free, mu, [G / determinant for G in images])
 
 
@@ -140,11 +140,3 @@ def _determinant(free: FreeGyrostat) -> tuple[Fraction, ...]:
     """det(K - mu) by powers of mu, the constant first."""
     S, c2, determinant = free.cubic
     return determinant, -c2, S, Fraction(-1)
-
-
-def _value(coefficients: list[arb], mu: arb) -> arb:
-    """The polynomial of these coefficients, the constant one first."""
-    total = arb(0)
-    for coefficient in reversed(coefficients):
-        total = total * mu + coefficient
-    return total

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.scenes.bodies import rigid_mass_matrix
 from taylor_verify.scenes.imported.attributes import Reading
 from taylor_verify.scenes.imported.tree import Node
 from taylor_verify.scenes.imported.water import Water
@@ -43,20 +44,10 @@ class Link:
     water: Water = field(default_factory=Water)
 
     @property
-    def rigid_matrix(self) -> Matrix:
-        """M = [[m 1, -m [c]x], [m [c]x, I - m [c]x [c]x]] of (x, y) = M (U, Omega) without a fluid."""
-        m, c = self.mass, tensors.cross_matrix(self.centre)
-        offset = tuple(tensors.scaled(-m, row) for row in c)
-        steiner = tensors.product(offset, c)
-        angular = tuple(map(tensors.plus, self.inertia, steiner))
-        return tensors.blocks(tensors.diagonal((m, m, m)), offset, angular)
-
-    @property
     def mass_matrix(self) -> Matrix:
         """The inertia of link and fluid together."""
-        if self.added_mass is None:
-            return self.rigid_matrix
-        return tuple(map(tensors.plus, self.rigid_matrix, self.added_mass))
+        rigid = rigid_mass_matrix(self.mass, self.centre, self.inertia)
+        return tuple(map(tensors.plus, rigid, self.added_mass)) if self.added_mass else rigid
 
 
 class Format(NamedTuple):

@@ -18,6 +18,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes.imported.attributes import Reading, decimal, is_true
 from taylor_verify.scenes.imported.tree import Node
+from taylor_verify.scenes.loads.loads import Hung
 
 _FORCES: Final = "xyzkmn"
 _SPEEDS: Final = dict(zip("UVWPQR", ("u1", "u2", "u3", "w1", "w2", "w3"), strict=True))
@@ -34,14 +35,6 @@ _DAMPING: Final = {
 
 
 @dataclass(frozen=True)
-class Hanging:
-    """A force that is constant in space, at a point of the link."""
-
-    force: Vector
-    at: Vector
-
-
-@dataclass(frozen=True)
 class Water:
     """Effect of water on one link, about its origin and in its axes.
 
@@ -52,7 +45,7 @@ class Water:
 
     added_mass: Matrix | None = None
     terms: tuple[tuple[str, ...], ...] = ((),) * 6
-    hanging: tuple[tuple[str, Hanging], ...] = ()
+    hanging: tuple[tuple[str, Hung], ...] = ()
     current: Vector = ZERO_VECTOR
     thrusts: tuple[tuple[str, str], ...] = ()
     remarks: tuple[str, ...] = ()
@@ -198,7 +191,7 @@ def _square(node: Node, reading: Reading) -> list[list[Fraction]]:
 
 def _buoyant(
     link: Node, mass: Fraction, centre: Vector, plugin: Node, reading: Reading
-) -> tuple[tuple[str, Hanging], ...]:
+) -> tuple[tuple[str, Hung], ...]:
     """Return weight and buoyancy; neither where the file has no volume."""
     at = reading.inner(link, "center_of_buoyancy") or ZERO_VECTOR
     is_neutral = is_true(link.written("neutrally_buoyant"))
@@ -218,9 +211,9 @@ def displaced_mass(link: Node, plugin: Node, density: Fraction, reading: Reading
 
 def balance(
     mass: Fraction, centre: Vector, displaced: Fraction, at: Vector, gravity: Vector
-) -> tuple[tuple[str, Hanging], ...]:
+) -> tuple[tuple[str, Hung], ...]:
     """Return the weight of a link and the buoyancy of the mass that it displaces."""
     return (
-        ("weight", Hanging(tensors.scaled(mass, gravity), centre)),
-        ("buoyancy", Hanging(tensors.scaled(-displaced, gravity), at)),
+        ("weight", Hung(tensors.scaled(mass, gravity), centre)),
+        ("buoyancy", Hung(tensors.scaled(-displaced, gravity), at)),
     )

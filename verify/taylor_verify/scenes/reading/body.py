@@ -16,7 +16,15 @@ from typing import Final
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
-from taylor_verify.scenes.bodies import DAMPING, Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
+from taylor_verify.scenes.bodies import (
+    DAMPING,
+    Body,
+    Clebsch,
+    Ellipsoid,
+    ImmersedBody,
+    RigidBody,
+    rigid_mass_matrix,
+)
 from taylor_verify.scenes.loads.loads import Entries, Loads
 from taylor_verify.scenes.reading.table import Table, complete, right
 
@@ -154,13 +162,7 @@ def _assembled(table: Table) -> ImmersedBody | None:
     added = _added_mass(table)
     if mass is None or inertia is None or centre is None or added is None:
         return None
-    arm = tensors.scaled(mass, centre)
-    square = tensors.product(tensors.cross_matrix(centre), tensors.cross_matrix(arm))
-    about_origin = tuple(map(tensors.minus, inertia, square))
-    rigid = tensors.blocks(
-        tensors.diagonal((mass,) * 3), tensors.transpose(tensors.cross_matrix(arm)), about_origin
-    )
-    matrix = tuple(map(tensors.plus, rigid, added))
+    matrix = tuple(map(tensors.plus, rigid_mass_matrix(mass, centre, inertia), added))
     expected = "a mass and an added mass that make a positive definite mass matrix"
     mend = "an added mass is minus a naval derivative: X_udot = -0.93 adds 0.93"
     if not _is_positive(table, expected, matrix, "mass", mend):

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, Final, NamedTuple, cast
 
 from taylor_verify.numbers.tensors import Vector
-from taylor_verify.records.faults import shown
 from taylor_verify.records.quantities import RESERVED
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 from taylor_verify.scenes.loads.vocabulary import TAKEN, Doubts
 from taylor_verify.scenes.reading.hints import advice
 from taylor_verify.scenes.reading.loads import ENTRY, is_name
-from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, Number, Table, exact_number
+from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, Number, Table, exact_number, right
 
 MOST_COMPONENTS: Final = 100
 _ZERO: Final = Fraction(0)
 # An interval with a fault stands as this one, so that its instants are not too many.
 _NEVER: Final = Fraction(10**LARGEST_EXPONENT)
 _START: Final = Number(exact_number, _ZERO)
+_EVERY: Final = right("a positive time from instant to instant", lambda number: number > 0)
+_OFFSET: Final = right("an offset that is not negative", lambda number: number >= 0)
 
 
 class OwnStates(NamedTuple):
@@ -84,8 +84,8 @@ def _continuous(table: Table, name: str) -> Continuous | None:
 
 def _sampled(table: Table, name: str) -> Held | None:
     value = _entries(table, "value", ENTRY)
-    every = _right(table, "every", "a positive time from instant to instant", lambda n: n > 0)
-    offset = _right(table, "offset", "an offset that is not negative", lambda n: n >= 0, _ZERO)
+    every = table.number("every", reader=_EVERY)
+    offset = table.number("offset", default=_ZERO, reader=_OFFSET)
     has_start = table.has("start")
     start = _entries(table, "start", _START) if has_start else None
     if value is None:
@@ -130,18 +130,3 @@ def _start(table: Table, start: _Entries | None, entries: _Entries) -> Vector:
 
 def _shape(entries: _Entries) -> str:
     return f"an array of {len(entries.each)}" if entries.is_vector else "one number"
-
-
-def _right(
-    table: Table,
-    key: str,
-    expected: str,
-    is_right: Callable[[Fraction], bool],
-    default: Fraction | None = None,
-) -> Fraction | None:
-    """Return a number that is right; None after a fault."""
-    number = table.number(key, default=default)
-    if number is None or is_right(number):
-        return number
-    table.fault(expected, shown(number), key)
-    return None

@@ -40,6 +40,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, final
 
+from taylor_verify.numbers.rotation import scalar_product as dot
+from taylor_verify.numbers.tensors import cross
 from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step, Stepped, Unsolved
 from taylor_verify.solvers.geometric.vectors import (
     Matrix,
@@ -48,8 +50,6 @@ from taylor_verify.solvers.geometric.vectors import (
     ahead,
     apply,
     cayley,
-    cross,
-    dot,
     scaled,
     solved,
 )

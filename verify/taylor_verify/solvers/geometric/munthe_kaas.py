@@ -16,13 +16,13 @@ from dataclasses import dataclass
 from math import exp
 from typing import final
 
+from taylor_verify.numbers.tensors import cross
 from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step, Stepped
 from taylor_verify.solvers.geometric.vectors import (
     Quaternion,
     Vector,
     ahead,
     apply,
-    cross,
     exponential,
     scaled,
     turned_back,

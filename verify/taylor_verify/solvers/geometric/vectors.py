@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from math import cos, sin, sqrt
 
+from taylor_verify.numbers.rotation import scalar_product as dot
+from taylor_verify.numbers.tensors import cross
+
 Vector = tuple[float, float, float]
 # Rows; of a system that is to be solved, columns.
 Matrix = tuple[Vector, Vector, Vector]
@@ -15,18 +18,6 @@ Quaternion = tuple[float, float, float, float]
 
 # Below this angle 1 - x^2/6 is sin(x)/x to the last bit: the next term is x^4/120 < 2^-53.
 _SMALL = 1e-4
-
-
-def dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def cross(a: Vector, b: Vector) -> Vector:
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
 
 
 def apply(A: Matrix, b: Vector) -> Vector:

@@ -20,12 +20,6 @@ def named(name: str) -> Taylor:
     return Taylor(name, tolerance=_tolerance(name, chosen), is_optimised="code" in chosen)
 
 
-def at_tolerance(text: str) -> Taylor:
-    """Return the driver at a tolerance, a decimal or a/b; ValueError for one that is not positive."""
-    name = f"{TAYLOR}?tol={text}"
-    return Taylor(name, tolerance=tolerance(name))
-
-
 def tolerance(name: str) -> Fraction | None:
     """Return the tolerance that is set in a name, exactly as written; None for the rung's own.
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain, groupby, pairwise, product
 from math import inf, isfinite
 from typing import Final
@@ -35,67 +36,75 @@ NEGLIGIBLE: Final = 1e-10
 WORSE_BELOW: Final = 2.0
 
 
+@dataclass(frozen=True)
+class _Job:
+    """A job with its scenes, and the settings of engines from which one is taken for it."""
+
+    board: Board
+    entries: EntryList
+    engines: Sequence[EngineSetting]
+    scenes: Sequence[str]
+    name: str = ""
+
+    @cached_property
+    def scores(self) -> list[Score]:
+        """The score of each setting at every step at which all scenes were judged."""
+        return [score for setting in self.engines for score in setting.scores(self.scenes)]
+
+    @cached_property
+    def titles(self) -> dict[str, str]:
+        """The titles of the engines by their names."""
+        return self.entries.titles
+
+    def by_engine(self) -> Iterator[tuple[str, list[EngineSetting]]]:
+        """Yield each engine with its settings."""
+        for engine, group in groupby(self.engines, key=lambda setting: setting.engine):
+            yield engine, [*group]
+
+
 def advice(board: Board, entries: EntryList) -> list[str]:
     """Return sentences that tell a user what to take and what to avoid, the most useful first.
 
     They follow from the rows of the ``board``. ``entries`` is the list of engines, which names the scenes
     of the advice. A job under loads has one sentence; `at_length` has all that is to say.
     """
-    names = entries.titles
-    engines, shipped = _entrants(board, entries), _entrants(board, entries, shipped=True)
+    engines, scenes = _entrants(board, entries), advised(board, entries)
+    jobs = [_Job(board, entries, engines, own, name) for name, own in scenes.items()]
     return [
         *chain.from_iterable(
-            _in_short(engines, job, scenes, entries)
+            _in_short(job)
             if any(setting.load for setting in engines)
-            else _of_free_bodies(board, engines, job, scenes, names)
-            for job, scenes in advised(board, entries).items()
+            else [*_take(job), *_never(job)]
+            for job in jobs
         ),
-        *_as_shipped(engines, shipped, names, entries),
-        *_too_fine(engines, [*chain.from_iterable(advised(board, entries).values())], names),
+        *_as_shipped(engines, _entrants(board, entries, shipped=True), entries),
+        *_too_fine(_Job(board, entries, engines, [*chain.from_iterable(scenes.values())])),
     ]
 
 
-def _of_free_bodies(
-    board: Board,
-    engines: Sequence[EngineSetting],
-    job: str,
-    scenes: Sequence[str],
-    names: dict[str, str],
-) -> Iterator[str]:
-    yield from _take(board, engines, job, scenes, names)
-    yield from _never(engines, job, scenes, names)
-
-
-def at_length(board: Board, entries: EntryList, job: str) -> list[str]:
+def at_length(board: Board, entries: EntryList, name: str) -> list[str]:
     """Return the sentences on a job under loads: what to take, what suffices, and what to avoid."""
-    engines, scenes = _entrants(board, entries), advised(board, entries).get(job, [])
-    return [
-        *_take(board, engines, job, scenes, entries.titles),
-        *_ways_to_avoid(engines, scenes, entries.titles),
-        *_missed_switches(engines, scenes, entries),
-        *_lost_engines(engines, job, scenes, entries.titles),
-    ]
+    scenes = advised(board, entries).get(name, [])
+    job = _Job(board, entries, _entrants(board, entries), scenes, name)
+    return [*_take(job), *_ways_to_avoid(job), *_missed_switches(job), *_lost_engines(job)]
 
 
-def _in_short(
-    engines: Sequence[EngineSetting], job: str, scenes: Sequence[str], entries: EntryList
-) -> Iterator[str]:
+def _in_short(job: _Job) -> Iterator[str]:
     """Yield a paragraph for a job under loads: the best setting, and what to avoid."""
-    names, scores = entries.titles, [s for setting in engines for s in setting.scores(scenes)]
-    if (best := best_of(scores)) is None:
+    if (best := best_of(job.scores)) is None:
         return
-    _, *equal = _equals(scores, lambda score: score.error, TIE)
-    others = _either([bold(prose(names[score.setting.engine])) for score in equal], "and")
+    _, *equal = _equals(job.scores, lambda score: score.error, TIE)
+    others = _either([bold(prose(job.titles[score.setting.engine])) for score in equal], "and")
     tie = f"; a tie with {others}" if equal else ""
     sentences = [
-        f"For {job} take {named(best.setting, names)}{_step(best)}{_load(best)}: right to "
+        f"For {job.name} take {named(best.setting, job.titles)}{_step(best)}{_load(best)}: right to "
         f"{figure(best.error)}{tie}."
     ]
-    if bad := [f"{prose(w)} ({figure(s.error)} at best)" for w, s in _bad_ways(scores).items()]:
+    if bad := [f"{prose(w)} ({figure(s.error)} at best)" for w, s in _bad_ways(job.scores).items()]:
         sentences.append(f"Never with the load {_either(bad)}.")
-    if any(_missed_switches(engines, scenes, entries)):
+    if any(_missed_switches(job)):
         sentences.append("Never a step that goes over a switch.")
-    yield " ".join([*sentences, *_lost_engines(engines, job, scenes, names)])
+    yield " ".join([*sentences, *_lost_engines(job)])
 
 
 def _entrants(board: Board, entries: EntryList, shipped: bool = False) -> list[EngineSetting]:
@@ -123,23 +132,17 @@ def named(setting: EngineSetting, names: dict[str, str]) -> str:
     return f"{bold(prose(f'{names[setting.engine]} {setting.version}'.strip()))}{words}"
 
 
-def _take(
-    board: Board,
-    engines: Sequence[EngineSetting],
-    job: str,
-    scenes: Sequence[str],
-    names: dict[str, str],
-) -> Iterator[str]:
+def _take(job: _Job) -> Iterator[str]:
     """Yield the most accurate settings, and the cheapest of those that suffice for most uses."""
-    scores = [score for setting in engines for score in setting.scores(scenes)]
+    scores, names, board = job.scores, job.titles, job.board
     if (best := best_of(scores)) is None:
         return
     equal = _equals(scores, lambda score: score.error, TIE)
     taken = _either([f"{named(score.setting, names)}{_step(score)}" for score in equal])
     tie = f", a tie: their errors differ by less than a factor {TIE}" if len(equal) > 1 else ""
     yield (
-        f"For {job} take {taken}{_load(best)}: {_states(best)} are right to {figure(best.error)} on all "
-        f"of {_listed(scenes)}, the most that an engine reaches here{tie}."
+        f"For {job.name} take {taken}{_load(best)}: {_states(best)} are right to {figure(best.error)} on "
+        f"all of {_listed(job.scenes)}, the most that an engine reaches here{tie}."
     )
     if paced := [s for s in scores if s.error <= ENOUGH and board.pace(s.row)]:
         cheapest, *others = _equals(paced, lambda score: board.pace(score.row) or inf, TIE_OF_TIMES)
@@ -161,14 +164,11 @@ def _equals(scores: Sequence[Score], size: Callable[[Score], float], factor: flo
     return [score for score in best.values() if size(score) <= factor * least]
 
 
-def _ways_to_avoid(
-    engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
-) -> Iterator[str]:
+def _ways_to_avoid(job: _Job) -> Iterator[str]:
     """Yield a warning of the ways of giving a load whose best engine is far worse than another way's."""
-    scores = [score for setting in engines for score in setting.scores(scenes)]
     if listed := [
-        f"{prose(way)} ({named(score.setting, names)}{_step(score)} has {figure(score.error)})"
-        for way, score in _bad_ways(scores).items()
+        f"{prose(way)} ({named(score.setting, job.titles)}{_step(score)} has {figure(score.error)})"
+        for way, score in _bad_ways(job.scores).items()
     ]:
         yield f"Never with the load {_either(listed)}, the least error of that way here."
 
@@ -183,53 +183,47 @@ def _bad_ways(scores: Sequence[Score]) -> dict[str, Score]:
     return {way: score for way, score in best.items() if score.error > FAR_WORSE * least}
 
 
-def _missed_switches(
-    engines: Sequence[EngineSetting], scenes: Sequence[str], entries: EntryList
-) -> Iterator[str]:
+def _missed_switches(job: _Job) -> Iterator[str]:
     """Yield a warning of a step that goes over a switch: its error is larger than that of a longer step."""
-    switched = [scene.name for scene in entries.scene if scene.switches and scene.name in scenes]
+    switched = [s.name for s in job.entries.scene if s.switches and s.name in job.scenes]
     losses = [
         (shorter.worst / longer.worst, setting, longer, shorter)
-        for scene, setting in product(switched, engines)
+        for scene, setting in product(switched, job.engines)
         for longer, shorter in pairwise(setting.on(scene))
         if FAR_WORSE * longer.worst < shorter.worst < inf
     ]
     if losses:
         _, setting, longer, shorter = max(losses, key=lambda loss: loss[0])
         yield (
-            f"Never a step that goes over a switch: {named(setting, entries.titles)} has "
+            f"Never a step that goes over a switch: {named(setting, job.titles)} has "
             f"{figure(longer.worst)} with a step of {longer.value}, which ends on every switch, and "
             f"{figure(shorter.worst)} with {shorter.value}, which does not."
         )
 
 
-def _lost_engines(
-    engines: Sequence[EngineSetting], job: str, scenes: Sequence[str], names: dict[str, str]
-) -> Iterator[str]:
+def _lost_engines(job: _Job) -> Iterator[str]:
     """Yield a warning of engines that lose the motion at every step."""
     lost = []
-    for engine, group in groupby(engines, key=lambda setting: setting.engine):
-        scores = [score for setting in group for score in setting.scores(scenes)]
+    for engine, group in job.by_engine():
+        scores = [score for setting in group for score in setting.scores(job.scenes)]
         least = min((score.error for score in scores), default=0.0)
         if least >= LOST:
-            lost.append(f"{bold(prose(names[engine]))} ({error(least)})")
+            lost.append(f"{bold(prose(job.titles[engine]))} ({error(least)})")
     if lost:
-        yield f"Not for {job}, with the least error at any step: {'; '.join(lost)}."
+        yield f"Not for {job.name}, with the least error at any step: {'; '.join(lost)}."
 
 
-def _never(
-    engines: Sequence[EngineSetting], job: str, scenes: Sequence[str], names: dict[str, str]
-) -> Iterator[str]:
+def _never(job: _Job) -> Iterator[str]:
     """Yield warnings of methods that lose the motion, and of engines whose methods all lose it."""
     methods, whole_engines = [], []
-    for engine, group in groupby(engines, key=lambda setting: setting.engine):
-        own = [best for setting in group if (best := best_of(setting.scores(scenes))) is not None]
+    for engine, group in job.by_engine():
+        own = [best for each in group if (best := best_of(each.scores(job.scenes))) is not None]
         lost = [best for best in own if best.error >= LOST]
         sound = best_of(best for best in own if best.error < LOST)
         if not lost:
             continue
         least = min(lost, key=lambda best: best.error)
-        name = bold(prose(f"{names[engine]} {least.setting.version}".strip()))
+        name = bold(prose(f"{job.titles[engine]} {least.setting.version}".strip()))
         if sound is None:
             whole_engines.append(
                 f"{name} ({figure(least.error)}, drift of the energy {_energy(least)})"
@@ -242,7 +236,7 @@ def _never(
         yield f"Never {'; '.join(methods)}."
     if whole_engines:
         listed = "; ".join(whole_engines)
-        yield f"Not for {job}, with the least error at any step measured here: {listed}."
+        yield f"Not for {job.name}, with the least error at any step measured here: {listed}."
 
 
 def _energy(score: Score) -> str:
@@ -256,10 +250,7 @@ def _either(words: Sequence[str], joint: str = "or") -> str:
 
 
 def _as_shipped(
-    engines: Sequence[EngineSetting],
-    shipped: Sequence[EngineSetting],
-    names: dict[str, str],
-    entries: EntryList,
+    engines: Sequence[EngineSetting], shipped: Sequence[EngineSetting], entries: EntryList
 ) -> Iterator[str]:
     """Yield a warning of engines that are far worse as shipped than with the board's settings."""
     warnings = []
@@ -276,7 +267,8 @@ def _as_shipped(
         warning = next((e.warning for e in entries.entry if e.name == engine and e.warning), "")
         needs = f" needs {warning}" if warning else ""
         warnings.append(
-            f"{bold(prose(names[engine]))}{needs} ({error(row.worst)} becomes {figure(usual.worst)})"
+            f"{bold(prose(entries.titles[engine]))}{needs} ({error(row.worst)} becomes "
+            f"{figure(usual.worst)})"
         )
     if warnings:
         yield f"Not as shipped: {'; '.join(warnings)}."
@@ -304,19 +296,17 @@ def _identity(row: EngineRow) -> tuple[str, ...]:
     return row.engine, row.version, row.variant, row.scene, row.value, row.rung
 
 
-def _too_fine(
-    engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
-) -> Iterator[str]:
+def _too_fine(job: _Job) -> Iterator[str]:
     """Yield a warning of engines whose smallest step is not their best."""
     steps = []
-    for engine, group in groupby(engines, key=lambda setting: setting.engine):
-        best = best_of(score for setting in group for score in setting.scores(scenes))
+    for engine, group in job.by_engine():
+        best = best_of(score for setting in group for score in setting.scores(job.scenes))
         if best is None or not best.value or best.error >= LOST or best.setting.knob != "step":
             continue
-        finest = best.setting.scores(scenes)[-1]
+        finest = best.setting.scores(job.scenes)[-1]
         if finest.error > WORSE_BELOW * best.error:
             growth = f"{figure(best.error)} becomes {error(finest.error)} with {finest.value}"
-            steps.append(f"{best.value} in {bold(prose(names[engine]))} ({growth})")
+            steps.append(f"{best.value} in {bold(prose(job.titles[engine]))} ({growth})")
     if steps:
         yield f"No smaller step than {', '.join(steps)}."
 

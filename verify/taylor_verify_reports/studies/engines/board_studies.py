@@ -11,7 +11,14 @@ from taylor_verify_reports.studies.engines import document, loaded_page, page
 from taylor_verify_reports.studies.engines.document import Board
 from taylor_verify_reports.studies.engines.engine_page import pages
 from taylor_verify_reports.studies.engines.entry import entry_list
-from taylor_verify_reports.studies.study import Measured, NotMeasured, Option, Progress, Study
+from taylor_verify_reports.studies.study import (
+    Measured,
+    NotMeasured,
+    Option,
+    Progress,
+    Study,
+    whole_number,
+)
 
 
 def _measure(
@@ -58,16 +65,14 @@ def _names(text: str) -> tuple[str, ...]:
     return tuple(name for name in text.split(",") if name)
 
 
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise ValueError(f"expected a number of processes, got {text!r}")
-    return int(text)
-
-
 OPTIONS: Final = (
     Option("only", "run only these engines, separated by commas", _names, "NAMES"),
     Option("anew", "also run again the engines that are stored"),
-    Option("workers", "run N engines at a time; default: one for each core", _count),
+    Option(
+        "workers",
+        "run N engines at a time; default: one for each core",
+        partial(whole_number, least=1),
+    ),
 )
 
 

@@ -94,7 +94,7 @@ def _cells(
         prose(setting.words) or NOTHING,
         prose(finest.load) or NOTHING,
         *(figure(rows[step].worst) if step in rows else NOTHING for step in steps),
-        _orders(setting, finest),
+        setting.orders(scene, [*finest.floors][:2]),
         figure(None if pace is None else 1e6 * pace),
         _numbers(board, [*rows.values()]),
     ]
@@ -104,11 +104,3 @@ def _numbers(board: Board, rows: Sequence[EngineRow]) -> str:
     """Return the numbers of the first and the last of rows that stand in succession."""
     first, last = (board.numbers[row.key] for row in (rows[0], rows[-1]))
     return f"{first} to {last}" if last > first else f"{first}"
-
-
-def _orders(setting: EngineSetting, row: EngineRow) -> str:
-    """Return the observed orders of the first quantity and of the attitude."""
-    names = [*row.floors][:2]
-    orders = [setting.order(row.scene, name) for name in names]
-    words = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
-    return ", ".join(words) or NOTHING

@@ -149,15 +149,13 @@ COLUMNS: Final = (
 
 def cells(board: Board, setting: EngineSetting, row: EngineRow) -> list[str]:
     """Return the cells of a row of `COLUMNS` after the name of its engine."""
-    orders = [setting.order(row.scene, name) for name in ("omega", "attitude")]
-    order_cells = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
     pace = board.pace(row)
     return [
         prose(setting.words) or NOTHING,
         _knob(row),
         figure(row.errors.get("omega")),
         figure(row.errors.get("attitude")),
-        ", ".join(order_cells),
+        setting.orders(row.scene, ("omega", "attitude")),
         figure(row.errors.get("T")),
         figure(None if pace is None else 1e6 * pace),
     ]

@@ -14,6 +14,7 @@ from math import inf, log10
 from taylor_verify.records.answers import Order, OrderPoint
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.order_of_points import read_order
+from taylor_verify.words.cells import NOTHING
 from taylor_verify_reports.studies.engines.document import EngineRow, EnginesStudy
 
 
@@ -70,6 +71,12 @@ class EngineSetting:
         points.sort(key=lambda point: -point.step)
         unit = "rad" if quantity == "attitude" else ""
         return read_order(quantity, unit, points) if points else None
+
+    def orders(self, scene: str, quantities: Iterable[str]) -> str:
+        """Return the observed orders of some quantities as a cell; a dash where the steps show none."""
+        orders = [self.order(scene, name) for name in quantities]
+        words = [f"{o.order:.1f}" if o and o.order is not None else NOTHING for o in orders]
+        return ", ".join(words) or NOTHING
 
     def at(self, value: str, scenes: Iterable[str]) -> Score | None:
         """Return the worst row of several scenes at one step; None if one of them was not judged."""

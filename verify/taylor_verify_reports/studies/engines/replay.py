@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Any, Final, final
 
 import numpy as np
-from mpmath import mp
 
 from taylor_verify.judge.causes.likely import with_causes
 from taylor_verify.judge.judgement import Judgement, judgement
@@ -19,9 +18,10 @@ from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.callback import of_states
 from taylor_verify.solvers.registry import solver_named
-from taylor_verify.solvers.solver import Solver, columns
-from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.trajectory import Trajectory
 from taylor_verify_reports.studies.engines.entry import Asked
 
 States = np.ndarray[Any, Any]
@@ -42,13 +42,7 @@ class Stored(Solver):
 
     def solve(self, problem: Problem) -> Trajectory:
         """Return the stored trajectory as the answer to ``problem``."""
-        layout = columns(problem)
-        ends = np.cumsum([width for _, width in layout])[:-1]
-        # A float32 becomes a float64 without a change of its value.
-        numbers = np.array([[mp.mpf(float(v)) for v in row] for row in self.states], dtype=object)
-        parts = np.split(numbers, ends, axis=1)
-        quantities = {name: part for (name, _), part in zip(layout, parts, strict=True)}
-        return Trajectory(Outcome.FINISHED, quantities, steps=self.steps)
+        return replace(of_states(self.states, problem), steps=self.steps)
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,10 @@ from typing import Any, Final
 
 from taylor_verify.records.status import Status
 from taylor_verify.words.cells import NOTHING, figure, judged
+from taylor_verify.words.csv_sheet import sheet as csv_sheet
 from taylor_verify.words.markdown import bold, bullets, code, prose
 from taylor_verify.words.page_parts import made_on, whole
-from taylor_verify_reports.studies.columns import Columns, csv_sheet, lay_out
+from taylor_verify_reports.studies.columns import Columns, lay_out
 from taylor_verify_reports.studies.growth.grown import (
     EXACT,
     Ensemble,
@@ -175,7 +176,8 @@ def _name(run: Ensemble) -> str:
 
 def sheet(study: GrowthStudy) -> str:
     """Return a CSV row for every quantity of every ensemble: its exponent with interval, and its gate."""
-    return csv_sheet(_grown(run, row) for run in study.runs for row in run.quantities)
+    rows = [_grown(run, row) for run in study.runs for row in run.quantities]
+    return csv_sheet(list(rows[0]) if rows else [], rows)
 
 
 def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:

@@ -7,7 +7,6 @@ its summary, and every verdict other than `pass` with its reason.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -36,7 +35,7 @@ from taylor_verify_reports.studies.hard.hard_scenes import (
     most_periods,
 )
 from taylor_verify_reports.studies.hard.picture import Line, lines, pictures
-from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
+from taylor_verify_reports.studies.study import Measured, Option, Progress, Study, whole_number
 
 _FOLDER: Final = "extremes/"
 # Mark after the last value that was tried, beyond which the reach may extend.
@@ -346,19 +345,6 @@ def store_scenes(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
     return list(replace_files(folder, texts, stale=folder.glob("*.toml")))
 
 
-def _runs(text: str) -> int:
-    with suppress(ValueError):
-        if int(text) >= LEAST_RUNS:
-            return int(text)
-    raise ValueError(f"expected a whole number of at least {LEAST_RUNS}, got {text}")
-
-
-def _seed(text: str) -> int:
-    with suppress(ValueError):
-        return int(text)
-    raise ValueError(f"expected a whole number, got {text}")
-
-
 STUDY: Final = Study(
     name="hard",
     title="hard scenes: their verdicts, the worst found, and how far each precision carries",
@@ -373,8 +359,8 @@ STUDY: Final = Study(
             "runs",
             "search each family for the worst scene with N runs, and replace the shipped ones; "
             f"{RUNS} are published",
-            _runs,
+            partial(whole_number, least=LEAST_RUNS),
         ),
-        Option("seed", "the seed of the search; default: 1", _seed),
+        Option("seed", "the seed of the search; default: 1", whole_number),
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from taylor_verify.plotting.picture import Picture
@@ -41,7 +41,7 @@ def _engines(sources: Sources) -> Illustration:
         "second of the motion: each engine at the best of its settings, a point for every step."
     )
     machine = sources.board.timings.machine.processor
-    picture = _named("engines-time", engines_page.pictures(sources.board), "engines")
+    picture = _first(engines_page.pictures(sources.board), "engines", "engines-time")
     return Illustration("engines", picture, Caption(words, ENGINES, machine))
 
 
@@ -67,13 +67,9 @@ def _trade(sources: Sources) -> Illustration:
     return Illustration("tradeoff", picture, Caption(words, TRADEOFF, machine), width=90)
 
 
-def _named(stem: str, pictures: Sequence[Picture], study: str) -> Picture:
-    """Return the picture with this stem. Raises ValueError if there is none."""
-    return _first([picture for picture in pictures if picture.stem == stem], study)
-
-
-def _first(pictures: Sequence[Picture], study: str) -> Picture:
-    """Return the first picture of a study. Raises ValueError if there is none."""
-    if not pictures:
-        raise ValueError(f"expected a picture of what `publish {study}` has stored, got none")
-    return pictures[0]
+def _first(pictures: Iterable[Picture], study: str, stem: str = "") -> Picture:
+    """Return the first picture of a study, with this stem if any is given; ValueError if there is none."""
+    for picture in pictures:
+        if stem in ("", picture.stem):
+            return picture
+    raise ValueError(f"expected a picture of what `publish {study}` has stored, got none")

@@ -22,7 +22,13 @@ from taylor_verify_reports.studies.hard.hard_scenes import HARD
 from taylor_verify_reports.studies.paper.paper_findings import REACHED
 from taylor_verify_reports.studies.paper.sources import Sources
 from taylor_verify_reports.studies.tradeoff import trades as tradeoff
-from taylor_verify_reports.studies.tradeoff.peers import DIGITS, OUTSIDE, TAYLOR, TITLES
+from taylor_verify_reports.studies.tradeoff.peers import (
+    DIGITS,
+    NOT_REACHED,
+    OUTSIDE,
+    TAYLOR,
+    TITLES,
+)
 from taylor_verify_reports.studies.tradeoff.trades import Trade, cheapest
 
 VERDICTS: Final = (f"{store.FOLDER}/{store.VERDICTS}",)
@@ -178,7 +184,7 @@ def _cost(trade: Trade, family: str, digits: int) -> str:
     """Return the time of the cheapest setting of a family that leaves so many digits, with its interval."""
     best = cheapest((row for row in trade.sound if row.point.family == family), digits)
     if best is None:
-        return "not reached"
+        return NOT_REACHED
     low, high = best.timing.low, best.timing.high
     interval = f" ({figure(low)} to {figure(high)})" if low is not None else ""
     return f"{figure(best.timing.ratio)}{interval}"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.records import store
-from taylor_verify_reports.studies.stored import SceneDocuments
+from taylor_verify_reports.studies.stored import SceneDocuments, documents
 from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Study
 
 # Separators without blanks make the rows of numbers shorter.
@@ -18,25 +18,15 @@ PORTRAITS: Final = SceneDocuments(
 
 def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify.scenes.library import names
+    from taylor_verify_reports.studies.portraits.portrait import portrait
 
-    return Measured(PORTRAITS.write(folder, _portraits(names(), progress)))
+    return Measured(PORTRAITS.write(folder, documents(portrait, names(), progress)))
 
 
 def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
-    written: list[Path] = []
-    _portraits(scenes, progress, lambda one: written.extend(PORTRAITS.add(folder, [one])))
-    return written
-
-
-def _portraits(
-    scenes: Sequence[str],
-    progress: Progress,
-    keep: Callable[[dict[str, Any]], object] | None = None,
-) -> list[dict[str, Any]]:
     from taylor_verify_reports.studies.portraits.portrait import portrait
-    from taylor_verify_reports.studies.stored import documents
 
-    return documents(portrait, scenes, progress.counting(len(scenes)), keep)
+    return PORTRAITS.add_made(folder, portrait, scenes, progress)
 
 
 STUDY: Final = Study[None](

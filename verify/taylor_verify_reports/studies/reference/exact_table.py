@@ -30,6 +30,7 @@ def reference(scene: Scene) -> dict[str, Any]:
     texts = [shortest_text(instant, DIGITS) for instant in scene.clock.instants]
     times = [(text, Fraction(text)) for text in texts]
     printed = document(scene, solution(scene), times, DIGITS)
+    own = {group.name: group.columns for group in scene.groups}
     return {
         "scene": scene.name,
         "title": scene.title,
@@ -42,19 +43,22 @@ def reference(scene: Scene) -> dict[str, Any]:
         "body": _exact_parts(scene.body.parts()),
         **_written(scene),
         "initial": _initial(scene),
-        "columns": _columns(scene, printed["rows"]),
+        "columns": {
+            **columns(printed["rows"], {**COLUMNS, **own}),
+            "radius": [row["radius"] for row in printed["rows"]],
+        },
     }
 
 
-def _columns(scene: Scene, rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
-    """Return the columns of the rows by name: the time, each component, the radius."""
-    columns = {"t": [row["t"] for row in rows]}
-    own = {group.name: group.columns for group in scene.groups}
-    for quantity, names in {**COLUMNS, **own}.items():
-        if quantity in rows[0]:
-            entries = np.array([row[quantity] for row in rows]).reshape(len(rows), -1).T
-            columns |= dict(zip(names, entries.tolist(), strict=True))
-    return columns | {"radius": [row["radius"] for row in rows]}
+def columns(
+    rows: Sequence[Mapping[str, Any]], names: Mapping[str, Sequence[str]]
+) -> dict[str, list[str]]:
+    """Return the columns of printed rows by name: the time, and each component, named by its quantity."""
+    listed = {"t": [str(row["t"]) for row in rows]}
+    for quantity in (quantity for quantity in names if quantity in rows[0]):
+        entries = np.array([row[quantity] for row in rows]).reshape(len(rows), -1).T
+        listed |= zip(names[quantity], entries.tolist(), strict=True)
+    return listed
 
 
 # The scene, in exact text.

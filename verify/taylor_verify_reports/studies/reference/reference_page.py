@@ -12,7 +12,7 @@ example.rs    a program that integrates a body and compares its motion with a re
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any, Final
@@ -22,19 +22,29 @@ from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.words.markdown import code, table
 from taylor_verify.words.page_parts import MADE_BY
-from taylor_verify_reports.studies.stored import SceneDocuments
+from taylor_verify_reports.studies.stored import SceneDocuments, documents
 from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Published, Study
 
 FOLDER: Final = "reference"
 # The scenes of a folder that have one sheet together, and its name.
 _SHARED: Final = {"loads": "loads.csv"}
-TRAJECTORIES: Final = SceneDocuments(FOLDER, "taylor-verify publish --reference; do not edit")
 EXAMPLES: Final = ("example.cpp", "example.rs")
 _TEMPLATES: Final = Path(__file__).with_name("templates")
 _SHEET: Final = re.compile(r"\[csv\]\(([^()/]+\.csv)\)")
 
 Document = Mapping[str, Any]
 """Row of a scene: ``columns`` (a list of decimal texts by name), and the other keys of its JSON."""
+
+
+def _flat(document: Document) -> Document:
+    """Return a document with its columns as keys of their own."""
+    others = {name: value for name, value in document.items() if name != "columns"}
+    return {**others, **document["columns"]}
+
+
+TRAJECTORIES: Final = SceneDocuments(
+    FOLDER, "taylor-verify publish --reference; do not edit", form=_flat
+)
 
 
 def write(folder: Path, documents: Sequence[Document]) -> list[Path]:
@@ -49,21 +59,10 @@ def write(folder: Path, documents: Sequence[Document]) -> list[Path]:
         **examples,
         "README.md": _readme(documents, examples),
     }
-    texts = TRAJECTORIES.texts(map(_flat, documents))
+    texts = TRAJECTORIES.texts(documents)
     texts |= {f"{FOLDER}/{name}": text for name, text in beside.items()}
     stale = [*TRAJECTORIES.own(folder), *_own_sheets(folder / FOLDER)]
     return list(replace_files(folder, texts, stale=stale))
-
-
-def add_json(folder: Path, documents: Iterable[Document]) -> list[Path]:
-    """Write the JSON files alone, beside existing files, and return them. Raises OSError."""
-    return TRAJECTORIES.add(folder, map(_flat, documents))
-
-
-def _flat(document: Document) -> dict[str, Any]:
-    """Return a document with its columns as keys of their own."""
-    others = {name: value for name, value in document.items() if name != "columns"}
-    return {**others, **document["columns"]}
 
 
 def sheet_of(scene: str) -> str:
@@ -143,8 +142,9 @@ def _own_sheets(target: Path) -> list[Path]:
 
 def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify.scenes.library import names
+    from taylor_verify_reports.studies.reference.exact_table import reference
 
-    return Measured(write(folder, _trajectories(names(), progress)))
+    return Measured(write(folder, documents(reference, names(), progress)))
 
 
 def _lacking(report: Published) -> tuple[str, ...]:
@@ -156,20 +156,9 @@ def _lacking(report: Published) -> tuple[str, ...]:
 
 
 def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
-    written: list[Path] = []
-    _trajectories(scenes, progress, lambda one: written.extend(add_json(folder, [one])))
-    return written
-
-
-def _trajectories(
-    scenes: Sequence[str],
-    progress: Progress,
-    keep: Callable[[dict[str, Any]], object] | None = None,
-) -> list[dict[str, Any]]:
     from taylor_verify_reports.studies.reference.exact_table import reference
-    from taylor_verify_reports.studies.stored import documents
 
-    return documents(reference, scenes, progress.counting(len(scenes)), keep)
+    return TRAJECTORIES.add_made(folder, reference, scenes, progress)
 
 
 STUDY: Final = Study[None](

@@ -7,6 +7,7 @@ from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Final
 
+from taylor_verify.batch.pickling import dumps
 from taylor_verify.batch.pool import LocalPool, available_cores
 from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
@@ -16,12 +17,9 @@ from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.runs import gravest
 from taylor_verify.words.cells import NOTHING, judged, main_error, ratio, verdict_table, worst
 from taylor_verify.words.markdown import code, prose, table
+from taylor_verify_reports.studies.finished_parts import Parts
 from taylor_verify_reports.studies.site.extension import SCENES
-from taylor_verify_reports.studies.site.scene_page import (
-    motion_place,
-    scene_page,
-)
-from taylor_verify_reports.studies.site.site_work import Drawings
+from taylor_verify_reports.studies.site.scene_page import motion_place, scene_page
 from taylor_verify_reports.studies.site.stage import (
     DOCS,
     FRONT,
@@ -59,7 +57,7 @@ _COLUMNS: Final = (
 )
 
 
-def staged(folder: Path, stored: Drawings) -> Stage:
+def staged(folder: Path, stored: Parts) -> Stage:
     """Return a stage with every page of the site and the files that pages link to.
 
     Drawings that are ``stored`` are not made again.
@@ -103,14 +101,14 @@ def _pictures_of(portrait: Document | None, records: Mapping[str, Document]) -> 
     return []
 
 
-def _drawn(pictures: Sequence[Picture], stored: Drawings) -> dict[str, str]:
+def _drawn(pictures: Sequence[Picture], stored: Parts) -> dict[str, str]:
     """Return the SVG of each picture by the name of its file; many are drawn on all cores."""
-    drawn = {picture.stem: stored.find(picture) for picture in pictures}
+    drawn = {picture.stem: stored.find(dumps(picture)) for picture in pictures}
     lacking = [picture for picture in pictures if drawn[picture.stem] is None]
     with LocalPool(available_cores()) if len(lacking) >= _MANY else nullcontext() as pool:
         made = map(_svg, lacking) if pool is None else pool.map(_svg, lacking)
         for picture, svg in zip(lacking, made, strict=True):
-            stored.keep(picture, svg)
+            stored.keep(dumps(picture), svg)
             drawn[picture.stem] = svg
     return {f"{stem}.svg": svg for stem, svg in drawn.items() if svg is not None}
 

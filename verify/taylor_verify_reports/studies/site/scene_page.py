@@ -8,8 +8,6 @@ from html import escape
 from itertools import groupby
 from typing import Final
 
-import numpy as np
-
 from taylor_verify.draw.caption import WAYS
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.file_names import of_scene
@@ -19,6 +17,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import conclusion, figure, verdict_table
 from taylor_verify.words.markdown import bullets, code, prose, table
 from taylor_verify.words.page_parts import packages
+from taylor_verify_reports.studies.reference.exact_table import columns
 from taylor_verify_reports.studies.reference.reference_page import sheet_of
 from taylor_verify_reports.studies.source import Document, Report
 
@@ -237,11 +236,8 @@ def _values(document: Document) -> list[str]:
 
 def _trajectory(rows: Sequence[Document]) -> str:
     """Return exact states as a trajectory file, with aligned columns."""
-    columns = [["t", *(str(row["t"]) for row in rows)]]
-    for key in (key for key in COLUMNS if key in rows[0]):
-        entries = np.array([row[key] for row in rows]).reshape(len(rows), -1).T.tolist()
-        columns += [[name, *own] for name, own in zip(COLUMNS[key], entries, strict=True)]
-    padded = [[cell.rjust(max(map(len, column))) for cell in column] for column in columns]
+    listed = [[name, *cells] for name, cells in columns(rows, COLUMNS).items()]
+    padded = [[cell.rjust(max(map(len, column))) for cell in column] for column in listed]
     return "\n".join(map(", ".join, zip(*padded, strict=True)))
 
 

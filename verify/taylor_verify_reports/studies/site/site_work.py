@@ -14,30 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.batch.pickling import dumps
-from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.replacement import replace_files
 from taylor_verify_reports.studies import finished_parts as folders
 from taylor_verify_reports.studies.finished_parts import Parts
 
 _STAMP: Final = "sources.sha256"
-
-
-@dataclass(frozen=True)
-class Drawings:
-    """Drawings by their pictures, each written as it is made."""
-
-    folder: Path
-
-    def find(self, picture: Picture) -> str | None:
-        return self._parts.find(dumps(picture))
-
-    def keep(self, picture: Picture, svg: str) -> None:
-        self._parts.keep(dumps(picture), svg)
-
-    @property
-    def _parts(self) -> Parts:
-        return Parts(self.folder, ".svg")
 
 
 @dataclass(frozen=True)
@@ -47,8 +28,9 @@ class Work:
     folder: Path
 
     @property
-    def drawings(self) -> Drawings:
-        return Drawings(self.folder / "drawings")
+    def drawings(self) -> Parts:
+        """The drawings, each written as it is made, by the bytes of its picture."""
+        return Parts(self.folder / "drawings", ".svg")
 
     @property
     def pages(self) -> Path:

@@ -19,7 +19,7 @@ DIGITS: Final = (6, 9, 12)
 OUTSIDE: Final = "outside "
 TAYLOR: Final = "taylor f64"
 OPTIMISED: Final = "taylor f64 optimised"
-_NOT_REACHED: Final = "not reached"
+NOT_REACHED: Final = "not reached"
 _NONE: Final = (
     "Not measured: `taylor-verify publish tradeoff --outside` does, and makes their environments."
 )
@@ -113,7 +113,7 @@ def _times(trades: Trades) -> str:
 
 def _cell(row: TimedPoint | None, is_there: bool) -> str:
     if row is None:
-        return _NOT_REACHED if is_there else NOTHING
+        return NOT_REACHED if is_there else NOTHING
     asked = f" @ {row.point.requested:.0e}" if row.point.requested else ""
     return f"{bold(figure(row.timing.ratio))}{asked}"
 

@@ -18,7 +18,7 @@ from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page_parts import whole
 from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
-from taylor_verify_reports.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
+from taylor_verify_reports.studies.tradeoff.peers import DIGITS, NOT_REACHED, TAYLOR, peer_sections
 from taylor_verify_reports.studies.tradeoff.timing_method import (
     how_it_was_timed,
     remake,
@@ -33,7 +33,6 @@ from taylor_verify_reports.studies.tradeoff.trades import (
     write,
 )
 
-_NOT_REACHED: Final = "not reached"
 _RIVALS: Final = ("scipy DOP853", "scipy LSODA", "scipy RK45", "scipy Radau", "scipy BDF")
 _GEOMETRIC: Final = "geometric "
 _ASKED: Final = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -53,7 +52,7 @@ def page(trades: Trades, folder: Path) -> str:
         _WHAT,
         "## What so many digits cost",
         "The cheapest measured setting whose error leaves at least this number of digits: its time "
-        f"over that of the yardstick, the interval in brackets, and the tolerance. *{_NOT_REACHED}* "
+        f"over that of the yardstick, the interval in brackets, and the tolerance. *{NOT_REACHED}* "
         "means that no measured setting leaves so many. A ratio below 1 is faster than the yardstick, "
         "whose digits are in the first line of each scene. If the intervals of neighbouring "
         "tolerances overlap, chance decides which one is the cheapest.",
@@ -139,7 +138,7 @@ def _cheapest(rows: Iterable[TimedPoint], digits: int) -> str:
     """Return ratio, interval and tolerance of the fastest setting that leaves these digits."""
     best = cheapest(rows, digits)
     if best is None:
-        return _NOT_REACHED
+        return NOT_REACHED
     is_tolerance = best.point.asked == "tolerance" and best.point.requested
     return f"{_ratio(best)}{f' @ {best.point.requested:.0e}' if is_tolerance else ''}"
 

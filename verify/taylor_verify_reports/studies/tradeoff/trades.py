@@ -33,11 +33,6 @@ class TradeScene:
     sha256: str
     attainable: dict[str, Number] = field(default_factory=dict)
 
-    @property
-    def is_long(self) -> bool:
-        """True for a scene that is followed beyond its own end, with few solvers."""
-        return UNTIL in self.scene
-
 
 @dataclass(frozen=True)
 class TradeNumbers:
@@ -144,7 +139,7 @@ class Trade:
     @property
     def is_long(self) -> bool:
         """True for a scene that is followed beyond its own end, with few solvers."""
-        return self.about.is_long
+        return UNTIL in self.scene
 
     @property
     def sound(self) -> tuple[TimedPoint, ...]:

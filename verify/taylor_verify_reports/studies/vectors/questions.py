@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any, Final
@@ -20,6 +20,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.process.protocol import question
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
 from taylor_verify_reports.studies.causes.loaded import on_grid
+from taylor_verify_reports.studies.reference.exact_table import columns
 from taylor_verify_reports.studies.vectors.bodies_in_water import IN_WATER
 from taylor_verify_reports.studies.vectors.bodies_under_loads import (
     OWN_STATES,
@@ -129,7 +130,10 @@ def answered(asked: Question) -> dict[str, Any]:
         "truth": {
             "route": printed["route"],
             "evidence": printed["evidence"],
-            "columns": _columns(printed["rows"]),
+            "columns": {
+                **columns(printed["rows"], _NAMES),
+                "radius": [row["radius"] for row in printed["rows"]],
+            },
         },
     }
 
@@ -178,13 +182,3 @@ def _nested(values: Floats, written: Callable[[float], str]) -> Any:
     if np.ndim(values) > 1:
         return [_nested(row, written) for row in values]
     return [written(float(x)) for x in values]
-
-
-def _columns(rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
-    """Return the columns of printed rows by name: the time, each component, the radius."""
-    columns = {"t": [row["t"] for row in rows]}
-    for quantity, names in _NAMES.items():
-        if quantity in rows[0]:
-            for place, name in enumerate(names):
-                columns[name] = [row[quantity][place] for row in rows]
-    return columns | {"radius": [row["radius"] for row in rows]}

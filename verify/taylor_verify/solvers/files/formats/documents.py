@@ -5,7 +5,6 @@ An object of arrays may have groups in it, or its columns under ``columns``.
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator, Mapping
 from itertools import islice
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records.faults import Faults, Refused, refusal
+from taylor_verify.records.json_text import loaded
 from taylor_verify.solvers.files.columns.names import KNOWN
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
@@ -101,17 +101,8 @@ def _document(file: Content, path: Path) -> Any:
 
 
 def _parsed(text: str, place: object) -> Any:
-    try:
-        return json.loads(
-            text,
-            parse_float=str,
-            parse_int=str,
-            parse_constant=float,
-            object_pairs_hook=named_once,
-        )
-    except (ValueError, RecursionError) as error:
-        reason = "brackets nested too deeply" if isinstance(error, RecursionError) else error
-        raise refusal("a JSON document", f"a fault in it: {reason}", place) from None
+    numbers = {"parse_float": str, "parse_int": str, "parse_constant": float}
+    return loaded(text, place, **numbers, object_pairs_hook=named_once)
 
 
 # An object in each line.

@@ -3,40 +3,52 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
 from math import inf
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
+from taylor_verify.plotting import sheet
+from taylor_verify.plotting.log_axes import widened
 from taylor_verify.plotting.picture import Picture
-from taylor_verify_reports.pictures.dumbbells import (
-    FULL,
-    HOLLOW,
-    Dumbbell,
-    Layout,
-    draw_dumbbells,
-)
+from taylor_verify.plotting.style import INK, PAGE_WIDTH, PAPER, QUIET, SMALL
+from taylor_verify.plotting.wording import power_of_ten
 from taylor_verify_reports.studies.engines.document import Board
 from taylor_verify_reports.studies.engines.entry import EntryList
 from taylor_verify_reports.studies.engines.ranking import newest, settings
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 STEM: Final = "engines-energy"
-_LAYOUT: Final = Layout(
-    marks={
-        "energy": (HOLLOW, "error of the energy"),
-        "motion": (FULL, "error of the angular velocity, against the exact motion"),
-    },
-    left=1.95,
-    right=0.85,
-    axis="largest error (1 is 100 %)",
-    values="motion wrong by",
-    note="Each engine with the setting and the step at which its motion is best, of all that we ran.",
-    heading=0.44,
+
+_MARK: Final[dict[str, Any]] = {"linestyle": "none", "markeredgewidth": 1.1}
+_HOLLOW: Final[dict[str, Any]] = {
+    **_MARK,
+    "marker": "D",
+    "markersize": 4.5,
+    "markerfacecolor": PAPER,
+    "markeredgecolor": "#0072B2",
+}
+_FULL: Final[dict[str, Any]] = {
+    **_MARK,
+    "marker": "o",
+    "markersize": 5,
+    "markerfacecolor": "#A83C00",
+    "markeredgecolor": "#A83C00",
+}
+# The two errors of a line, with their marks and meanings.
+_MARKS: Final[dict[str, sheet.Entry]] = {
+    "energy": (_HOLLOW, "error of the energy"),
+    "motion": (_FULL, "error of the angular velocity, against the exact motion"),
+}
+_NOTE: Final = (
+    "Each engine with the setting and the step at which its motion is best, of all that we ran."
 )
+# The height of a line, the heading, and the margins for names and values, in inches.
+_LINE, _HEADING, _LEFT, _RIGHT = 0.19, 0.44, 1.95, 0.85
 
 
 @dataclass(frozen=True)
@@ -96,11 +108,42 @@ def _headline(drawn: Sequence[Line], span: str) -> str:
 
 
 def _figure(drawn: Sequence[Line], span: str) -> Figure:
-    lines = [
-        Dumbbell(line.name, {"energy": line.energy, "motion": line.motion}, _percent(line.motion))
-        for line in drawn
-    ]
-    return draw_dumbbells(lines, replace(_LAYOUT, headline=_headline(drawn, span)))
+    """Return the figure: a line for each engine, its two errors joined by a stroke, the first on top."""
+    entries = list(_MARKS.values())
+    low, height = sheet.foot_of(entries, _NOTE) + sheet.BELOW, _LINE * len(drawn)
+    figure = sheet.blank(low + height + _HEADING)
+    width = PAGE_WIDTH - _LEFT - _RIGHT
+    axes = sheet.add_axes(figure, sheet.Frame(_LEFT, low, width, height))
+    errors = [error for line in drawn for error in (line.energy, line.motion)]
+    axes.set(xscale="log", ylim=(len(drawn) - 0.5, -0.5), xlim=widened(errors, 0.04, 0.04))
+    axes.set_yticks(range(len(drawn)), [line.name for line in drawn])
+    axes.xaxis.set_major_formatter(lambda value, _: power_of_ten(value))
+    axes.set_xlabel("largest error (1 is 100 %)")
+    axes.grid(visible=True, axis="x", which="major")
+    axes.tick_params(axis="y", length=0)
+    figure.text(0.01, 0.985, _headline(drawn, span), va="top", weight="bold")
+    axes.set_title("motion wrong by", pad=4, loc="right", x=1.0 + _RIGHT / width, fontsize=SMALL)
+    for place, line in enumerate(drawn):
+        _draw(axes, place, line)
+    sheet.draw_legend(figure, entries, _NOTE)
+    return figure
+
+
+def _draw(axes: Axes, place: int, line: Line) -> None:
+    axes.plot([line.energy, line.motion], [place, place], color=QUIET, linewidth=1.0, zorder=2)
+    for key, (look, _) in _MARKS.items():
+        axes.plot([getattr(line, key)], [place], zorder=3, gid=key, **look)
+    axes.annotate(
+        _percent(line.motion),
+        (1.0, place),
+        (6, 0),
+        xycoords=("axes fraction", "data"),
+        textcoords="offset points",
+        va="center_baseline",
+        size=SMALL,
+        color=INK,
+        annotation_clip=False,
+    )
 
 
 def _percent(error: float) -> str:

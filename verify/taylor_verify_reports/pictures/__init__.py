@@ -1,1 +1,0 @@
-"""Pictures of studies that no user of taylor_verify draws."""
