@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import product
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -105,8 +105,8 @@ def damped_steps(answer: Answer, stride: int) -> Iterator[Candidate]:
         step = partial(_damped, method.step, place == "before")
         fit = _fit(arcs, stride, replace(method, step=step, has_frame=not words), terms)
         if fit is not None:
-            yield _candidate(arcs, *fit, place, words, terms)
-            if fit[0].left < max(_EXACT, ROUNDINGS * arcs.floor):
+            yield _candidate(arcs, fit, place, words, terms)
+            if fit.steps.left < max(_EXACT, ROUNDINGS * arcs.floor):
                 return
 
 
@@ -128,7 +128,15 @@ def _family(law: _Of, h: float, pace: float, terms: Changes, title: str = "") ->
     return Family(title, "damping step", np.zeros(1), np.array([pace]), changes)
 
 
-def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps, Fitted] | None:
+class _Fit(NamedTuple):
+    """Steps with their fitted damping; ``is_any`` if any number of steps makes the same rows."""
+
+    steps: Steps
+    fitted: Fitted
+    is_any: bool
+
+
+def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> _Fit | None:
     """Return the steps from row to row that leave the least, with their damping; None if that is much.
 
     What is left is linear in h.
@@ -146,7 +154,7 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps
     def left(count: int) -> float:
         return fitted(count)[0].size / arcs.size
 
-    few, more = _TRIED
+    is_any, (few, more) = False, _TRIED
     first, second = fitted(few)[1], fitted(more)[1]
     change = first - second
     is_telling = np.linalg.norm(change) > _SURELY * arcs.size
@@ -161,13 +169,13 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps
         if left(count) > max(_EXACT, ROUNDINGS * arcs.floor):
             count = nearest_count(left, count, _MOST)
     else:
+        # All numbers of steps make these rows, each with a damping of its own.
         counts = _counts_of_short_numbers(fitted(1)[0], spacing)
-        if len(counts) != 1:
-            return None
-        (count,) = counts
-    return (
-        (Steps("", method, count, left(count)), fitted(count)[0]) if left(count) < _LEAVES else None
-    )
+        is_any = len(counts) != 1
+        count = 1 if is_any else counts[0]
+    fit = fitted(count)[0]
+    is_near = fit.size < _LEAVES * arcs.size
+    return _Fit(Steps("", method, count, fit.size / arcs.size), fit, is_any) if is_near else None
 
 
 def _counts_of_short_numbers(fit: Fitted, spacing: float) -> list[int]:
@@ -186,17 +194,17 @@ def _counts_of_short_numbers(fit: Fitted, spacing: float) -> list[int]:
     return counts
 
 
-def _candidate(
-    arcs: Arcs, steps: Steps, fit: Fitted, place: str, beside: str, terms: Changes
-) -> Candidate:
+def _candidate(arcs: Arcs, fit: _Fit, place: str, beside: str, terms: Changes) -> Candidate:
     """Return the candidate by the law whose number is short; the laws are alike but for that number."""
-    answer, h = arcs.answer, steps.step(arcs.answer)
-    factor = _FIRST[2](float(fit.numbers[0]), h)
+    answer, steps = arcs.answer, fit.steps
+    h = steps.step(answer)
+    factor = _FIRST[2](float(fit.fitted.numbers[0]), h)
     short = [law for law in _LAWS if _length(law[3](factor, h)) < _SHORT]
     name, words, law, number = short[0] if len(short) == 1 else _ANY
     what = "omega" if answer.n == 3 else "the velocities"
     long = steps.words(answer)
     each = f"each step of {long}" if long.startswith("h = ") else f"each of {long}"
+    each += ", or of more steps with another c" * fit.is_any
     title = f"{name}: {what} times {words} {place} the motion of {each}{beside}, with c"
     family = _family(law, h, 0.1 * Sizes.of(answer).pace, terms, title)
     numbers, motion = np.array([number(factor, h)]), partial(_motion, steps, h)

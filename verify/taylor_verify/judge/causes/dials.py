@@ -23,7 +23,10 @@ from taylor_verify.models.acting import Acting
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Held
 
-LITERAL: Final = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+# A number but for an exponent: of a negative base it has no other value.
+LITERAL: Final = re.compile(
+    r"(?<![\w.^])(?<!\*\*)(?<!\^ )(?<!\*\* )(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+)
 _NAME: Final = "dial_"
 # Later than all runs: the values of dials are never taken.
 _NEVER: Final = Fraction(10**9)

@@ -52,7 +52,8 @@ from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers,
 _PAIR_ROUNDINGS: Final = 100.0
 # Beside the steps of a method at least this work may be done.
 _BESIDE: Final = 100_000.0
-# Without an attitude in the file a load in space axes is only nearly right on the arcs.
+# Without an attitude in the file a load in space axes is only nearly right on the arcs, and one number on
+# arcs that go over kinks.
 _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
 _FAULT: Final = 0.3
@@ -156,6 +157,10 @@ class Search:
         """Return the proven cause, with all others that explain as well."""
         return self.choice.cause(candidates, leaves)
 
+    @cached_property
+    def _has_kinks(self) -> bool:
+        return has_kinks(self.answer.right)
+
     @property
     def is_clear(self) -> bool:
         """True if the defects are more than the rounding of the file."""
@@ -222,7 +227,7 @@ class Search:
 
     def _over_kinks(self, group: list[Linear], candidates: list[Candidate]) -> Cause | None:
         """Return a cause that is exact on the whole answer, which goes through kinks, as arcs do not."""
-        if not group or not has_kinks(self.answer.right):
+        if not group or not self._has_kinks:
             return None
         cause = self.cause(candidates)
         least = max(FAIR, ROUNDINGS * self.answer.floor(self.choice.groups))
@@ -270,7 +275,9 @@ class Search:
     def _candidate(self, family: Family, fit: Fitted) -> Candidate:
         answer, right = self.answer, self.answer.right
         coupled = right.changed(family.changes(fit.numbers)).coupled
-        near = _LOOSE if answer.file.q is None and coupled > answer.n else LEAVES
+        has_other_arcs = family.count == 1 and self._has_kinks
+        is_loose = has_other_arcs or (answer.file.q is None and coupled > answer.n)
+        near = _LOOSE if is_loose else LEAVES
         motion = self.motion if family.count else self.motion_of_faults
         left, of = fit.size / self.evidence.size, (fit.errors, fit.are_seen)
         return Candidate(family, fit.numbers, left, motion, near, None, *of)

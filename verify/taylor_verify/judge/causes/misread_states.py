@@ -1,4 +1,4 @@
-"""Loads whose own states are run otherwise: at other times, late, standing still, wheels half modelled."""
+"""Loads whose own states are run otherwise: at other times, late, standing still, without a lag."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.changed_texts import added, renamed, rewritten
+from taylor_verify.judge.causes.changed_texts import renamed, rewritten
 from taylor_verify.judge.causes.fit import Family, fault
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.written_numbers import Number
@@ -50,8 +50,6 @@ def _misread_states(loads: Loads) -> Iterator[tuple[str, Loads]]:
         rate = tuple(f"{factor}*({entry})" for entry in each.rate)
         yield f"{each.name} {words}", _with(loads, each, replace(each, rate=rate))
     yield from (_without_lag(loads, state) for state in own)
-    if loads.rotor:
-        yield from _half_wheels(loads)
 
 
 def numbers_of_sampling(loads: Loads) -> Iterator[Number]:
@@ -184,24 +182,3 @@ def _as_functions(loads: Loads, states: Sequence[State], texts: Mapping[str, str
     return replace(
         changed, definitions=(*changed.definitions, *own), states=(*changed.states, *states)
     )
-
-
-def _half_wheels(loads: Loads) -> Iterator[tuple[str, Loads]]:
-    """Yield wheels of text without their reaction, or without their gyroscopic term, and none."""
-    yield "wheels left out", replace(loads, rotor=("0", "0", "0"))
-    h, own = [str(entry) for entry in loads.rotor], dict(_rates(loads))
-    turning = [
-        f"({h[2]})*w2 - ({h[1]})*w3",
-        f"({h[0]})*w3 - ({h[2]})*w1",
-        f"({h[1]})*w1 - ({h[0]})*w2",
-    ]
-    yield "no gyroscopic term of the wheels", added(loads, {"moment": turning})
-    if all(entry in own or entry.replace(".", "").isdigit() for entry in h):
-        reaction = [f"({own.get(entry, 0)})" for entry in h]
-        yield "no reaction of the wheels' motors", added(loads, {"moment": reaction})
-
-
-def _rates(loads: Loads) -> Iterator[tuple[str, str]]:
-    for state in loads.states:
-        if isinstance(state, Continuous):
-            yield from zip(state.components, map(str, state.rate), strict=True)

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.basis import coriolis, coriolis_of
+from taylor_verify.judge.causes.basis import EPSILON, coriolis, coriolis_of
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
 from taylor_verify.judge.causes.many_flows import Floats
@@ -51,6 +51,12 @@ def _faults_of_wheels(right: Equations) -> Iterator[Family]:
     yield fault("gyroscopic term of the wheels alone", "gyroscopic term", {"extra": alone})
     for words, factor in _WRONG:
         yield fault(f"wheels {words}", "wheels", {"rotor": factor * right.rotor})
+    turning = np.einsum("ijk,j->ik", EPSILON, right.rotor)
+    for i, (words, factor) in product(np.flatnonzero(np.any(turning, axis=1)), _WRONG):
+        rows = (factor - 1) * turning * np.eye(3)[i][:, None]
+        title = f"gyroscopic term of the wheels {words} on axis {i + 1}"
+        extra = {"extra": right.basis.factors(velocities=rows)}
+        yield fault(title, "gyroscopic term", extra)
     for i, (words, factor) in product(np.flatnonzero(right.rotor), _WRONG):
         rotor = right.rotor * np.where(np.arange(3) == i, factor, 1.0)
         yield fault(f"wheel {i + 1} {words}", "wheels", {"rotor": rotor})

@@ -48,6 +48,7 @@ from taylor_verify.judge.causes.texts import (
     texts_of_vectors,
     with_entry,
 )
+from taylor_verify.judge.causes.wheels_of_text import half_wheels
 from taylor_verify.models.acting import Acting
 from taylor_verify.numbers.tensors import scaled
 from taylor_verify.scenes.loads.loads import Hung, Loads
@@ -213,7 +214,8 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
             changes = {"acting": acting.of(missed[1]), "late": 0.0}
             yield fault(f"switch at t = {time:.6g} missed", "switch", changes)
     hung, limited = hung_otherwise(loads), other_limits(loads)
-    for name, other in (*changed_texts(loads), *hung, *limited, *over_ground(right)):
+    every = (*changed_texts(loads), *hung, *limited, *over_ground(right), *half_wheels(loads))
+    for name, other in every:
         if next(other.faults(), None) is None:
             yield fault(name, KIND, {"acting": acting.of(other)})
     for k, (name, table) in enumerate(loads.tables):
