@@ -77,7 +77,11 @@ _SPEEDS: Final[dict[str, Callable[[str], str]]] = {
         lambda text: _COMPONENT.sub("1", _LENGTH.sub("1", text))
     ),
 }
-_SIGNS: Final = (("left out", "0*"), ("with the other sign", "-"))
+_Named = tuple[tuple[str, Callable[[str], str]], ...]
+_SIGNS: Final[_Named] = (
+    ("left out", "0*({})".format),
+    ("with the other sign", "-({})".format),
+)
 VELOCITIES: Final = frozenset(f"{letter}{i}" for letter in "uw" for i in _AXES)
 _WRONG_WAY: Final = "turned the wrong way, by R"
 # What is done to three parts of texts, one for each axis, beside which three others stay.
@@ -179,13 +183,15 @@ def _by_components(loads: Loads) -> Loads:
 
 
 def _named_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
-    """Yield each definition by a text, and each vector of [space], left out or with the other sign."""
-    for (k, (name, entry)), (words, sign) in product(enumerate(loads.definitions), _SIGNS):
+    """Yield definitions by texts and vectors of [space] left out, reversed, or standing still."""
+    begin = {"t": f"({decimal(loads.origin)})"}
+    changes: _Named = (*_SIGNS, ("stands still, as at the start", partial(renamed, names=begin)))
+    for (k, (name, entry)), (words, change) in product(enumerate(loads.definitions), changes):
         if rational(entry) is None:
-            other = with_entry(loads.definitions, k, (name, f"{sign}({entry})"))
+            other = with_entry(loads.definitions, k, (name, change(str(entry))))
             yield f"{name} {words}", replace(loads, definitions=other)
-    for (k, (name, entries)), (words, sign) in product(enumerate(loads.space), _SIGNS):
-        vector = tuple(f"{sign}({decimal(entry)})" for entry in entries)
+    for (k, (name, entries)), (words, change) in product(enumerate(loads.space), changes):
+        vector = tuple(change(decimal(entry)) for entry in entries)
         other = with_entry(loads.space, k, (name, vector))
         yield f"{name} of [space] {words}", replace(loads, space=other)
 
@@ -245,16 +251,31 @@ def _of_scene(loads: Loads) -> Iterator[tuple[str, _Names]]:
 
 
 def _drag_in_space(loads: Loads, some: list[str]) -> Iterator[tuple[str, Loads]]:
-    """Yield the drag of each vector, and of all, by velocities in space axes and along these."""
+    """Yield the drag of each vector, and of all, by velocities in space axes and along these.
+
+    The drag are all terms with velocities alone, or those of each velocity along or about its own axis.
+    """
+    known = [loads]
+    for names, is_drag in product(
+        [*([name] for name in some), *[some] * (len(some) > 1)], kinds_of_drag(loads)
+    ):
+        other = _with_part(loads, names, is_drag, _along_space)
+        if other not in known:
+            known.append(other)
+            yield f"drag of {' and '.join(names)} by coefficients along space axes", other
+
+
+def kinds_of_drag(loads: Loads) -> tuple[Callable[[str], bool], Callable[[str], bool]]:
+    """Return whether a term is one with velocities alone, and whether it is one of a single velocity."""
     is_moving, is_situated = _what_is_read(loads)
 
     def is_drag(term: str) -> bool:
         return is_moving(term) and not is_situated(term)
 
-    for names in [*([name] for name in some), *[some] * (len(some) > 1)]:
-        other = _with_part(loads, names, is_drag, _along_space)
-        if other != loads:
-            yield f"drag of {' and '.join(names)} by coefficients along space axes", other
+    def is_of_one(term: str) -> bool:
+        return is_drag(term) and len(VELOCITIES.intersection(NAME.findall(term))) == 1
+
+    return is_drag, is_of_one
 
 
 def _along_space(parts: Sequence[str], i: int) -> str:

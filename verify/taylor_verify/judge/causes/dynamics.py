@@ -18,6 +18,7 @@ from taylor_verify.judge.causes.blind_motions import Shape
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
 from taylor_verify.judge.causes.changed_equations import Changes
+from taylor_verify.judge.causes.coriolis_entries import faults_of_added_mass
 from taylor_verify.judge.causes.damped_steps import damped_steps
 from taylor_verify.judge.causes.energies import families_of_energies
 from taylor_verify.judge.causes.engine_steps import capped_speed, cleared_loads
@@ -36,7 +37,6 @@ from taylor_verify.judge.causes.kinks import has_kinks
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import (
     families_of_bodies,
-    faults_of_added_mass,
     faults_of_bodies,
 )
 from taylor_verify.judge.causes.pairs import Linear, likely_pairs, pairs_with_a_fault

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from itertools import combinations, permutations, product
+from itertools import combinations, permutations
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.judge.causes.basis import EPSILON, coriolis, coriolis_of
+from taylor_verify.judge.causes.basis import coriolis, coriolis_of
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
 from taylor_verify.judge.causes.float_answer import Answer
@@ -20,19 +20,6 @@ from taylor_verify.judge.causes.terms import load_names
 AND_REST: Final = "of a rigid body, and a factor of the rest"
 _REST: Final = "factor of the rest"
 _KIND: Final = "Coriolis matrix"
-_Places = tuple[tuple[int, int], ...]
-_LOWER: Final = ((5, 1), (5, 3), (6, 1), (6, 2))
-# Entries that public simulators set to zero together, rows and columns from 1.
-_TOGETHER: Final[dict[str, _Places]] = {
-    "pitch and yaw by the velocities": _LOWER,
-    "pitch by the velocities": _LOWER[:2],
-    "yaw by the velocities": _LOWER[2:],
-    "as in MSS": (*_LOWER, *((k, i) for i, k in _LOWER)),
-    "its lower left block, the Munk moment": tuple(product((4, 5, 6), (1, 2, 3))),
-    "its upper right block": tuple(product((1, 2, 3), (4, 5, 6))),
-    "its lower right block": tuple(product((4, 5, 6), (4, 5, 6))),
-    "all but its Munk moment": tuple(product(range(1, 7), (4, 5, 6))),
-}
 # Another centre of mass is a factor of its place.
 _OF_CENTRE: Final = {"centre of mass at the origin": 0, "centre of mass on the other side": -1}
 _ADDED: Final = (("left out", 0.0), ("with the other sign", -1.0), ("twice", 2.0))
@@ -58,7 +45,7 @@ def faults_of_bodies(right: Equations) -> Iterator[Family]:
         # Wrong axes are wrong in both.
         if not (name.startswith("principal axes") or np.allclose(coriolis_of(mass), 0.0)):
             yield fault(f"{name} in the {_term(right)} alone", "Coriolis matrix", {"extra": extra})
-        if is_body and (right.size == 6 or name.startswith("products")):
+        if is_body and (right.size == 6 or name.startswith(("products", "I_"))):
             changes = {"mass": mass, "extra": -extra}
             where = "mass matrix" if right.size == 6 else "tensor that divides"
             yield fault(f"{name} in the {where} alone", "Coriolis matrix", changes)
@@ -136,57 +123,6 @@ def _coupled(mass: Floats, factor: float) -> Floats:
 
 # C_A is the Coriolis matrix of Fossen (Handbook of Marine Craft Hydrodynamics, 2nd ed., 6.3.1): the terms
 # of A are -C_A(nu) nu, with the blocks [[0, -S(p)], [-S(p), -S(l)]] of (p, l) = A nu.
-
-
-_MASSES: Final = np.kron([[1.0, 0.0], [0.0, 0.0]], np.ones((3, 3)))
-# Parts of an added mass of which its Coriolis terms may be made; that of its diagonal is another body's.
-_PARTS: Final = {
-    "its masses alone": _MASSES,
-    "its diagonal masses alone": _MASSES * np.eye(6),
-    "all but its coupling of masses and moments": np.kron(np.eye(2), np.ones((3, 3))),
-}
-
-
-def faults_of_added_mass(right: Equations) -> Iterator[Family]:
-    """Yield the faults of the entries of an added mass that the scene names."""
-    if right.added is None or not np.any(right.added):
-        return
-    for words, places in _TOGETHER.items():
-        listed = " ".join(f"C_{i}{k}" for i, k in places)
-        name = f"entries {listed} of the added mass are 0 ({words})"
-        yield fault(name, _KIND, _changed(right, places, 0.0))
-    whole, parts = coriolis_of(right.added), [right.added, right.added * np.eye(6)]
-    for words, entries in _PARTS.items():
-        part = right.added * entries
-        if not any(np.array_equal(part, other) for other in parts):
-            parts.append(part)
-            extra = right.basis.factors(products=coriolis_of(part) - whole)
-            name = f"the Coriolis terms of the added mass are made of {words}"
-            yield fault(name, _KIND, {"extra": extra})
-    for i, k in product(range(1, 7), repeat=2):
-        for words, factor in (("is 0", 0.0), ("has the other sign", -1.0)):
-            changes = _changed(right, ((i, k),), factor)
-            if np.any(changes["extra"]):
-                name = f"entry C_{i}{k} of the added mass {words}, in the Coriolis matrix"
-                yield fault(name, _KIND, changes)
-
-
-def _changed(right: Equations, places: _Places, factor: float) -> dict[str, Floats]:
-    """Return the change by entries of C_A that have a factor."""
-    forms = np.zeros((6, 6, 6))
-    for i, k in places:
-        forms[i - 1, :, k - 1] = (factor - 1) * _entry(right, i - 1, k - 1)
-    return {"extra": right.basis.factors(products=right.basis.products(forms))}
-
-
-def _entry(right: Equations, i: int, k: int) -> Floats:
-    """Return the factors of nu in the entry of -C_A, (6,)."""
-    if i < 3 and k < 3:
-        return np.zeros(6)
-    assert right.added is not None
-    rows = right.added[3:] if i > 2 and k > 2 else right.added[:3]
-    # S(p)_ik = -epsilon_ikj p_j
-    return np.asarray(-EPSILON[i % 3, k % 3] @ rows)
 
 
 # Families.

@@ -41,7 +41,7 @@ _SMALL: Final = 1e-6
 _NEAR: Final = 1e-4
 _LOST: Final = 1e3
 _DIFFERENCE: Final = 1e-6
-_SOME: Final = 24
+_SOME: Final = 12
 
 # The ends of arcs from their begins, stepped to the kinks of loads or over them.
 Go = Callable[[Floats, bool], Floats]

@@ -33,6 +33,12 @@ _BLUR: Final = 0.03
 # Offsets are in proportion to time, or steps are equal, to these parts of the largest offset.
 _STRAIGHT: Final = 1e-2
 _EQUAL: Final = 0.1
+# Rows are off the motion if most of their error is across it, where a small part of a row would explain the
+# rest. So many rows tell it, whose error is so many roundings.
+_ACROSS: Final = 0.5
+_SHORT: Final = 0.1
+_CLEAR: Final = 30.0
+_FEWEST: Final = 6
 # Rates in a second direction so much smaller than those in the first leave the motion on a line.
 _ON_A_LINE: Final = 1e-6
 # Times of a file may be rounded to so many decimals.
@@ -50,9 +56,9 @@ def other_times(answer: Answer) -> Cause | None:
     if answer.has_states:
         return None
     late, left, pace, is_line = _offsets(answer)
-    units = {"attitude": 2.0, "centre": answer.reach}
+    units = _units(answer)
     largest = max(worst / units.get(name, 1.0) for name, worst in answer.worst.items())
-    noise = max(answer.roundings[name] / units.get(name, 1.0) for name in answer.worst)
+    noise = _noise(answer)
     remains = float(np.max(left))
     is_rounding = remains <= max(_ROUNDINGS * noise, _NEAR * largest)
     if not (is_rounding and remains < _LEFT_BY_SUMS * largest):
@@ -69,6 +75,24 @@ def other_times(answer: Answer) -> Cause | None:
     return Cause(words, "stamps", leaves)
 
 
+def _units(answer: Answer) -> dict[str, float]:
+    """Return the units of errors that are no part of the motion's size."""
+    return {"attitude": 2.0, "centre": answer.reach}
+
+
+def _noise(answer: Answer) -> float:
+    """Return the rounding of the rows, as a part of the motion's size."""
+    return max(answer.roundings[name] / _units(answer).get(name, 1.0) for name in answer.worst)
+
+
+def _are_off(apart: Floats, along: Floats, is_short: Floats, noise: float) -> bool:
+    """Return True if rows that are near to the motion are beside it, at whatever time."""
+    size = np.linalg.norm(apart, axis=0)
+    tell = is_short & (size > _CLEAR * noise)
+    across = np.linalg.norm(apart - along, axis=0)[tell] / size[tell]
+    return len(across) >= _FEWEST and bool(np.median(across) > _ACROSS)
+
+
 def _offsets(answer: Answer) -> tuple[Floats, Floats, float, bool]:
     """Return for each row the time from its stamp to that at which it is exact, and what is left there.
 
@@ -82,12 +106,14 @@ def _offsets(answer: Answer) -> tuple[Floats, Floats, float, bool]:
     sizes = [np.full((part.stop - part.start, 1), size) for part, size in parts.values()]
     scale, spacing = np.concatenate(sizes), answer.spacing
     late = np.full(answer.count, spacing * _whole_rows(rows / scale, z[0, compared] / scale))
-    at = at_other_times(answer, z, late) if late.any() else z
+    at, noise = at_other_times(answer, z, late) if late.any() else z, _noise(answer)
     for _ in range(_ROUNDS):
         slopes = right.rates(answer.times + late, at)[0, compared] / scale
         apart = (rows - at[0, compared]) / scale
         square = np.sum(slopes**2, axis=0)
         step = np.sum(slopes * apart, axis=0) / np.where(square > 0, square, np.inf)
+        if _are_off(apart, step * slopes, np.abs(step) < _SHORT * spacing, noise):
+            break
         late = np.clip(
             late + np.clip(step, -2 * spacing, 2 * spacing),
             -_MOST_ROWS * spacing,

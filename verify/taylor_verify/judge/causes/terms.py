@@ -99,6 +99,7 @@ def _coriolis_terms(right: Equations) -> Iterator[tuple[str, Floats]]:
             yield "Munk moment of the masses", coriolis(none, none, masses)
         yield "term x x W", coriolis(none, turn)
         yield "term y x W", coriolis(gyro)
+        yield "couple y x W + x x U", coriolis(gyro, none, turn)
 
 
 def load_names(n: int) -> list[str]:

@@ -21,6 +21,7 @@ from taylor_verify.judge.causes.changed_texts import (
     VELOCITIES,
     changed_texts,
     key_of,
+    kinds_of_drag,
     readers,
     rewritten,
     terms,
@@ -57,8 +58,10 @@ from taylor_verify.scenes.loads.tables import Kind
 KIND: Final = "number"
 _TURNS: Final = re.compile(r"\b(?:sin|cos|tan)\(")
 # A number below a fraction line makes the one of the other.
-_ANGLES: Final = (pi / 180, 180 / pi)
-_EXCHANGED: Final = "degrees and radians exchanged"
+_ANGLES: Final = {
+    "degrees and radians exchanged": (pi / 180, 180 / pi),
+    "cycles and radians exchanged": (2 * pi, 1 / (2 * pi)),
+}
 _DIGITS: Final = 15
 _MOST: Final = 60
 # Times the time of a switch: a time that no run reaches.
@@ -203,9 +206,10 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
         return
     names = {name for name, _ in loads.definitions}
     for number in numbers(loads):
-        for factor in _ANGLES if number.is_angle else ():
-            if (other := number.with_value(factor * number.value)) is not None:
-                yield fault(f"{number.name} {_EXCHANGED}", KIND, {"acting": acting.of(other)})
+        for words, factors in _ANGLES.items() if number.is_angle else ():
+            for factor in factors:
+                if (other := number.with_value(factor * number.value)) is not None:
+                    yield fault(f"{number.name} {words}", KIND, {"acting": acting.of(other)})
         if number.name in names and (other := number.with_value(-number.value)) is not None:
             yield fault(f"{number.name} with the other sign", KIND, {"acting": acting.of(other)})
         if (missed := _missed(loads, number)) is not None:
@@ -327,7 +331,8 @@ def _of_drag(loads: Loads) -> Iterator[Number]:
     names, own = readers(loads, VELOCITIES), texts_of_vectors(loads)
     vectors = (name for name, _ in loads.vectors)
     every = dict[tuple[frozenset[int], ...], tuple[str, Callable[[str], set[int]], str]]()
-    for key, (words, is_drag) in product([*vectors, ""], _DRAGS.items()):
+    kinds = {"drag by single velocities": kinds_of_drag(loads)[1], **_DRAGS}
+    for key, (words, is_drag) in product([*vectors, ""], kinds.items()):
         drag: Callable[[str], set[int]] = partial(_drag_of, names, is_drag)
         of_key = (drag(str(p.entry)) if key in ("", key_of(p)) else () for p in own)
         # Where all of the drag is in one vector, or is linear, or quadratic, the later words say it.
