@@ -13,8 +13,8 @@ import numpy as np
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, moved, row_to_row, some_arcs
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.dynamics import Search
 from taylor_verify.judge.causes.fit import Family, fault, linear
+from taylor_verify.judge.causes.fitted_search import Search
 from taylor_verify.judge.causes.float_answer import Answer, Motion, Places
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.many_frames import AFTER, outer, rotations, to_space

@@ -14,9 +14,9 @@ from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_course import SETTLED, Courses
-from taylor_verify.judge.causes.dynamics import Search, search_by
 from taylor_verify.judge.causes.energies import families_of_energies
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Sizes
+from taylor_verify.judge.causes.fitted_search import Search, search_by
 from taylor_verify.judge.causes.float_answer import Answer, Places
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.misread_states import (

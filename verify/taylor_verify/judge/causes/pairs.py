@@ -26,6 +26,8 @@ _ALONE: Final = 0.97
 _OF_BOTH: Final = 0.5
 # A linear fit that leaves no more is good.
 _GOOD: Final = 0.3
+# Numbers are far if they differ by this part of their scale.
+_FAR: Final = 0.3
 # Kinds that are one class: no two of them make a pair.
 _OF_INERTIA: Final = dict.fromkeys(
     ("body", "part of the body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
@@ -39,6 +41,10 @@ class Linear:
     family: Family
     slopes: Floats
     left: float
+
+    def is_beyond(self, size: float) -> bool:
+        """Return True if numbers far from the right ones leave more than defects of this size."""
+        return bool(np.linalg.norm(_FAR * self.slopes @ self.family.scale) > size)
 
     def begin(self, evidence: Evidence) -> Floats:
         """Return the numbers at which a fit begins: those of the linear fit, if it is good and of one."""
