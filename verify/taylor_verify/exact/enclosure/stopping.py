@@ -22,6 +22,7 @@ MOST_STEPS: Final = 1_000_000
 _LOST: Final = -10
 _SHRUNK: Final = -20
 _SEVERAL: Final = 16
+_BEFORE_A_KINK: Final = 3
 _DIGITS_PER_BIT: Final = Fraction(301, 1000)
 
 
@@ -96,7 +97,8 @@ class Watch:
             raise Coarse(self.needed(now, pending))
         if lengths and (is_lost or len(lengths) % _SEVERAL == 0):
             usual = median(lengths if is_lost else lengths[-8 * _SEVERAL :])
-            has_shrunk = lengths[-1] < usual * power_of_two(_SHRUNK)
+            # A step or two that end before a kink, and are next to nothing, are no end of the motion.
+            has_shrunk = max(lengths[-_BEFORE_A_KINK - 1 :]) < usual * power_of_two(_SHRUNK)
             # Steps that shrink in front of an end of the motion lose every box at last.
             if has_shrunk and (is_lost or self._is_narrow(box)):
                 because = "steps become ever shorter, as where a motion ends or a kink is touched,"
