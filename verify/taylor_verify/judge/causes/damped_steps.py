@@ -40,6 +40,8 @@ _FEW_DIGITS: Final = 2
 _SURELY: Final = 1e-9
 _ERRORS: Final = 5.0
 _SURE_ENOUGH: Final = 2e-7
+# Where no step shows, a damping is said that is known to this part.
+_KNOWN: Final = 1e-4
 
 
 @dataclass(frozen=True)
@@ -172,6 +174,8 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> _Fit | None
         # All numbers of steps make these rows, each with a damping of its own.
         counts = _counts_of_short_numbers(fitted(1)[0], spacing)
         is_any = len(counts) != 1
+        if is_any and _unsure(fitted(1)[0]) > _KNOWN:
+            return None
         count = 1 if is_any else counts[0]
     fit = fitted(count)[0]
     is_near = fit.size < _LEAVES * arcs.size
@@ -183,15 +187,20 @@ def _counts_of_short_numbers(fit: Fitted, spacing: float) -> list[int]:
 
     An exponential law has one number for all.
     """
-    number, counts = float(fit.numbers[0]), list[int]()
-    error = 0.0 if fit.errors is None else float(fit.errors[0])
-    near = max(_SURELY, _ERRORS * error / abs(number)) if number else np.inf
+    number, counts, near = float(fit.numbers[0]), list[int](), _unsure(fit)
     of_row = _FIRST[2](number, spacing)
     for count in range(1, _MOST + 1) if of_row > 0 and near < _SURE_ENOUGH else ():
         factor, h = of_row ** (1 / count), spacing / count
         if any(_length(law[3](factor, h), _FEW_DIGITS) < near for law in _LAWS):
             counts.append(count)
     return counts
+
+
+def _unsure(fit: Fitted) -> float:
+    """Return how far the number of a fit may be from the right one, as a part of it."""
+    number = abs(float(fit.numbers[0]))
+    error = 0.0 if fit.errors is None else float(fit.errors[0])
+    return max(_SURELY, _ERRORS * error / number) if number else np.inf
 
 
 def _candidate(arcs: Arcs, fit: _Fit, place: str, beside: str, terms: Changes) -> Candidate:
@@ -204,7 +213,7 @@ def _candidate(arcs: Arcs, fit: _Fit, place: str, beside: str, terms: Changes) -
     what = "omega" if answer.n == 3 else "the velocities"
     long = steps.words(answer)
     each = f"each step of {long}" if long.startswith("h = ") else f"each of {long}"
-    each += ", or of more steps with another c" * fit.is_any
+    each = f"{long} from row to row, whose steps do not show" if fit.is_any else each
     title = f"{name}: {what} times {words} {place} the motion of {each}{beside}, with c"
     family = _family(law, h, 0.1 * Sizes.of(answer).pace, terms, title)
     numbers, motion = np.array([number(factor, h)]), partial(_motion, steps, h)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import comb
 from typing import Any, Final
 
 import numpy as np
@@ -34,7 +35,10 @@ _ARITHMETIC: Final = 1e-12
 # A path is another one if it is off by more than this part of the error, and of the reach.
 _OFF_PATH: Final = 1e-3
 _NO_PATH: Final = 1e-6
+# A start is the scene's up to so many roundings, or as much of the scatter of the first rows, as noise has it.
 _SAME_START: Final = 10.0
+_FIRST_ROWS: Final = 24
+_NOISY: Final = 1.7
 
 
 # A function from equations, begins, their times and spans to the ends of arcs.
@@ -304,7 +308,20 @@ class Answer:
             off = np.abs(self.file.v[0] - self.right.mass @ nu) / self.sizes
             return bool(np.all(off <= _SAME_START * self.rounding))
         off = np.linalg.norm(((self.file.v[0] - nu) / self.sizes).reshape(-1, 3), axis=1)
-        return bool(np.any(off > [_SAME_START * self.roundings[name] for name in self.groups]))
+        noise = np.maximum([self.roundings[name] for name in self.groups], self._scatter)
+        return bool(np.any(off > _SAME_START * noise))
+
+    @property
+    def _scatter(self) -> float:
+        """The scatter of the first rows, as a part of the motion's size; 0 where they are smooth.
+
+        Differences of sixth order of noise are larger than those of fifth, which a motion does not make.
+        """
+        rows = (self.file.v - self.truth.v)[:_FIRST_ROWS] / self.sizes
+        if len(rows) < _FIRST_ROWS:
+            return 0.0
+        fifth, sixth = (float(np.sqrt(np.mean(np.diff(rows, k, axis=0) ** 2))) for k in (5, 6))
+        return sixth / comb(12, 6) ** 0.5 if sixth > _NOISY * fifth else 0.0
 
     @property
     def is_shown_at_start(self) -> bool:
