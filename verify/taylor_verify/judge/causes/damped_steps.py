@@ -16,7 +16,7 @@ from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import Family, Fitted, Sizes, gauss_newton
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.proof import LEAVES, ROUNDINGS
+from taylor_verify.judge.causes.proof import LEAVES, ROUNDINGS, may_leave, whole
 from taylor_verify.judge.causes.replayed_methods import METHODS, Method
 from taylor_verify.judge.causes.replays import nearest_count
 from taylor_verify.judge.causes.stepped_arcs import Steps, in_steps, moved_by
@@ -106,7 +106,7 @@ def damped_steps(answer: Answer, stride: int) -> Iterator[Candidate]:
         method = METHODS[of_motion.method]
         step = partial(_damped, method.step, place == "before")
         fit = _fit(arcs, stride, replace(method, step=step, has_frame=not words), terms)
-        if fit is not None:
+        if fit is not None and not (fit.is_any and _may_be_continuous(answer, fit, terms)):
             yield _candidate(arcs, fit, place, words, terms)
             if fit.steps.left < max(_EXACT, ROUNDINGS * arcs.floor):
                 return
@@ -173,13 +173,22 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> _Fit | None
     else:
         # All numbers of steps make these rows, each with a damping of its own.
         counts = _counts_of_short_numbers(fitted(1)[0], spacing)
-        is_any = len(counts) != 1
-        if is_any and _unsure(fitted(1)[0]) > _KNOWN:
+        is_any = not counts
+        if len(counts) > 1 or (is_any and _unsure(fitted(1)[0]) > _KNOWN):
             return None
         count = 1 if is_any else counts[0]
     fit = fitted(count)[0]
     is_near = fit.size < _LEAVES * arcs.size
     return _Fit(Steps("", method, count, fit.size / arcs.size), fit, is_any) if is_near else None
+
+
+def _may_be_continuous(answer: Answer, fit: _Fit, terms: Changes) -> bool:
+    """Return True unless the attitude shows that the damping comes in steps."""
+    h = fit.steps.step(answer)
+    pace = -float(np.log(_FIRST[2](float(fit.fitted.numbers[0]), h))) / h
+    motion = whole(answer, answer.right.changed({**terms, "damping": pace}))
+    left = 0.0 if motion is None else answer.leaves(motion).get("attitude", 0.0)
+    return left <= may_leave(answer, ["attitude"], 1)
 
 
 def _counts_of_short_numbers(fit: Fitted, spacing: float) -> list[int]:

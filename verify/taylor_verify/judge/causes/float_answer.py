@@ -35,7 +35,7 @@ _ARITHMETIC: Final = 1e-12
 # A path is another one if it is off by more than this part of the error, and of the reach.
 _OFF_PATH: Final = 1e-3
 _NO_PATH: Final = 1e-6
-# A start is the scene's up to so many roundings, or so much of the scatter that the first rows have of noise.
+# A start is the scene's up to so many roundings, or so much of the scatter of the first rows.
 _SAME_START: Final = 10.0
 _FIRST_ROWS: Final = 24
 _NOISY: Final = 1.7
