@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
+import re
 
 import numpy as np
 import pytest
@@ -38,14 +38,7 @@ WHEELS = text_of(
     {"omega": [0.3, -0.5, 0.4], "attitude": FRAME},
     *(6, 31),
 )
-CONSTANT = text_of(
-    {
-        "inertia": [[1.2, 0.1, 0.05], [0.1, 0.9, -0.07], [0.05, -0.07, 1.6]],
-        "rotor": [0.2, 0.3, 0.4],
-    },
-    {"omega": [0.3, -0.5, 0.4], "attitude": FRAME},
-    *(6, 31),
-)
+CONSTANT = re.sub("rotor = .*", "rotor = [0.2, 0.3, 0.4]", WHEELS)
 
 
 def named(changed: str, text: str) -> list[str]:
@@ -58,10 +51,6 @@ def named(changed: str, text: str) -> list[str]:
     return [cause.name for cause in explained_motion(scene, rows).causes]
 
 
-def held(every: Fraction) -> str:
-    return f"({every}*floor(t/({every})))"
-
-
 @pytest.mark.parametrize(
     ("text", "old", "new", "name"),
     by_turns(
@@ -69,7 +58,7 @@ def held(every: Fraction) -> str:
             (
                 MAGNET,
                 "cos(0.9*t)",
-                f"cos(0.9*{held(Fraction(1, 5))})",
+                "cos(0.9*floor(5*t)/5)",
                 "push taken every 0.2 and held",
             ),
             (
@@ -117,17 +106,11 @@ def test_one_definition_or_term_is_named(text: str, old: str, new: str, name: st
     [
         (MAGNET, "cos(0.9*t)", "cos(0.9*(t - 0.05*sin(7*t)))"),
         (MAGNET, '"cos(0.7*t)", "0.5"', '"cos(0.1*t*t)", "0.5"'),
-        (
-            WHEELS,
-            "[initial]",
-            'moment = ["w2*0.4 - w3*0.3", "0.3*w1*w3", 0]\n[initial]',
-        ),
+        (WHEELS, "[initial]", 'moment = ["w2*0.4 - w3*0.3", "0.3*w1*w3", 0]\n[initial]'),
     ],
 )
 def test_a_definition_of_another_law_has_no_such_name(text: str, old: str, new: str) -> None:
     """A time that sways, another phase, or another product of the rates is none of these faults."""
     assert old in text
-    words = ("taken every", "stands still", "cycles", "gyroscopic term of the wheels")
-    assert not [
-        cause for cause in named(text.replace(old, new), text) if any(w in cause for w in words)
-    ]
+    said = " ".join(named(text.replace(old, new), text))
+    assert not re.search("taken every|stands still|cycles|gyroscopic term of the wheels", said)
