@@ -112,5 +112,5 @@ def test_one_definition_or_term_is_named(text: str, old: str, new: str, name: st
 def test_a_definition_of_another_law_has_no_such_name(text: str, old: str, new: str) -> None:
     """A time that sways, another phase, or another product of the rates is none of these faults."""
     assert old in text
-    said = " ".join(named(text.replace(old, new), text))
-    assert not re.search("taken every|stands still|cycles|gyroscopic term of the wheels", said)
+    names = " ".join(named(text.replace(old, new), text))
+    assert not re.search("taken every|stands still|cycles|gyroscopic term of the wheels", names)

@@ -29,6 +29,7 @@ from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.numbers.precision import Rung, rung
+from taylor_verify.numbers.tensors import inverse
 from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -89,7 +90,9 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     """Return the right equations of a scene."""
     body, parts = given.body, given.body.parts()
     energy = np.array(body.energy_matrix, dtype=float)
-    mass = energy if given.model == "euler" else np.linalg.inv(energy)
+    # Rounded from the exact inverse, so that a scene which is printed has its own numbers.
+    exactly = body.energy_matrix if given.model == "euler" else inverse(body.energy_matrix)
+    mass = np.array(exactly, dtype=float)
     n, loads = len(mass), given.body.loads
     constant = [entry for name in body.load_names() for entry in parts[name]]
     acting = None if loads is None else Acting(given, loads)

@@ -12,6 +12,8 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Final
 
+import numpy as np
+
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.changed_texts import added, by_component, renamed, rewritten
 from taylor_verify.judge.causes.many_flows import Floats
@@ -28,6 +30,8 @@ from taylor_verify.scenes.loads.loads import Loads
 
 _U: Final = ("u1", "u2", "u3")
 _W: Final = ("w1", "w2", "w3")
+# A mass is rounded to this part.
+_ROUNDED: Final = 1e-15
 
 
 def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
@@ -48,10 +52,13 @@ def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
         names = {name: f"({text} - ({other}))" for (name, text), other in pairs}
         other = rewritten(loads, partial(renamed, names=names))
         yield f"the current in the loads is {words}", other
-    rate = "the rate of the current in body axes is left out"
+    mass, rate = _without_roundings(right.mass), "the rate of the current in body axes"
+    for words, factor in (("has the other sign", 2), ("is taken twice", -1)):
+        yield f"{rate} {words}", _with(loads, *_accelerated(factor * mass, current))
+    rate = f"{rate} is left out"
     yield (
         f"{rate}: nu' over ground for that through the water",
-        _with(loads, *_accelerated(right.mass, current)),
+        _with(loads, *_accelerated(mass, current)),
     )
     if right.added is None:
         return
@@ -64,6 +71,12 @@ def over_ground(right: Equations) -> Iterator[tuple[str, Loads]]:
     both = (_sums(a, b) for a, b in zip(slow, turning, strict=True))
     name = "the added mass moves over ground, not through the water: M_A nu' and C_A(nu) nu"
     yield name, _with(loads, *both)
+
+
+def _without_roundings(mass: Floats) -> Floats:
+    """Return a mass matrix with zeros for entries that are roundings of others."""
+    size = np.sqrt(np.diag(mass))
+    return np.where(np.abs(mass) > _ROUNDED * np.outer(size, size), mass, 0.0)
 
 
 def _accelerated(mass: Floats, current: Sequence[str]) -> tuple[list[str], list[str]]:
