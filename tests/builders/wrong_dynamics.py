@@ -14,7 +14,7 @@ from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.judge.causes.float_answer import Motion
 from taylor_verify.judge.causes.likely import Explained, explained
-from taylor_verify.judge.causes.material import material
+from taylor_verify.judge.causes.material import ExactMotion, material
 from taylor_verify.judge.causes.quaternion_rows import steady_signs
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
@@ -22,6 +22,7 @@ from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -176,6 +177,19 @@ def explained_motion(scene: Scene, file: Motion, noise: float = 0.5e-10) -> Expl
     of_columns = np.full(file.v.shape[1], noise)
     answer = _explained(given, file, (of_columns, 0.0 if file.q is None else noise, 0.0))
     return answer
+
+
+def named_motion(changed: str, text: str, clock: Fraction = Fraction(1)) -> list[str]:
+    """The names of the causes of the exact motion of a changed scene, printed in ten digits."""
+    return [cause.name for cause in explained_change(changed, text, clock).causes]
+
+
+def explained_change(changed: str, text: str, clock: Fraction = Fraction(1)) -> Explained:
+    """What is found of the exact motion of a changed scene, by another clock, printed in ten digits."""
+    scene = read(text, "asked")
+    elapsed = [clock * t for t in scene.clock.elapsed]
+    moved = ExactMotion(read(changed, "changed"), has_centre=False).at(elapsed, has_momenta=False)
+    return explained_motion(scene, Motion(np.round(moved.v, 10), np.round(moved.q, 10)))
 
 
 def _explained(

@@ -4,15 +4,10 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
 import pytest
 from builders.scenes import text_of
 from builders.turns import by_turns
-from builders.wrong_dynamics import explained_motion
-
-from taylor_verify.judge.causes.float_answer import Motion
-from taylor_verify.judge.causes.material import ExactMotion
-from taylor_verify.scenes.reading.reader import read
+from builders.wrong_dynamics import named_motion
 
 FRAME = [0.8, 0.4, 0.2, 0.4]
 MAGNET = text_of(
@@ -39,16 +34,6 @@ WHEELS = text_of(
     *(6, 31),
 )
 CONSTANT = re.sub("rotor = .*", "rotor = [0.2, 0.3, 0.4]", WHEELS)
-
-
-def named(changed: str, text: str) -> list[str]:
-    """The causes of the exact motion of a changed scene, printed in ten digits."""
-    scene = read(text, "definitions")
-    moved = ExactMotion(read(changed, "changed"), has_centre=False).at(
-        [*scene.clock.elapsed], has_momenta=False
-    )
-    rows = Motion(np.round(moved.v, 10), np.round(moved.q, 10))
-    return [cause.name for cause in explained_motion(scene, rows).causes]
 
 
 @pytest.mark.parametrize(
@@ -96,7 +81,7 @@ def named(changed: str, text: str) -> list[str]:
 def test_one_definition_or_term_is_named(text: str, old: str, new: str, name: str) -> None:
     """The motion of a scene with one other definition, or one other term, has the name of that."""
     assert old in text
-    (cause,) = named(text.replace(old, new), text)
+    (cause,) = named_motion(text.replace(old, new), text)
     assert cause.startswith(name)
 
 
@@ -112,5 +97,5 @@ def test_one_definition_or_term_is_named(text: str, old: str, new: str, name: st
 def test_a_definition_of_another_law_has_no_such_name(text: str, old: str, new: str) -> None:
     """A time that sways, another phase, or another product of the rates is none of these faults."""
     assert old in text
-    names = " ".join(named(text.replace(old, new), text))
+    names = " ".join(named_motion(text.replace(old, new), text))
     assert not re.search("taken every|stands still|cycles|gyroscopic term of the wheels", names)

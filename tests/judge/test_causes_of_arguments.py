@@ -10,12 +10,10 @@ import pytest
 from builders.integrators import step
 from builders.scenes import text_of
 from builders.turns import by_turns
-from builders.wrong_dynamics import explained_motion
+from builders.wrong_dynamics import explained_change, explained_motion, named_motion
 
 from taylor_verify.judge.causes.float_answer import Motion
-from taylor_verify.judge.causes.likely import Explained
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.material import ExactMotion
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
@@ -82,17 +80,6 @@ CONSTANT = TIMED.replace('"0.3*sin(0.7*t)", "-0.15*w2", "0.12"', '"0.3", "-0.1",
 @cache
 def scene(text: str) -> Scene:
     return read(text, "loads")
-
-
-def of_motion(changed: str, text: str, clock: Fraction = Fraction(1)) -> Explained:
-    """What is found of the exact motion of a changed scene, printed in ten digits."""
-    elapsed = [clock * t for t in scene(text).clock.elapsed]
-    moved = ExactMotion(scene(changed), has_centre=False).at(elapsed, False)
-    return explained_motion(scene(text), Motion(np.round(moved.v, 10), np.round(moved.q, 10)))
-
-
-def names(changed: str, text: str, clock: Fraction = Fraction(1)) -> list[str]:
-    return [cause.name for cause in of_motion(changed, text, clock).causes]
 
 
 def swapped(text: str, *pairs: tuple[str, str]) -> str:
@@ -167,7 +154,7 @@ PLAIN = [("o1", "(cos(0.3*t))"), ("o2", "(sin(0.3*t))"), ("o3", "0")]
 def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
     """The causes of a motion whose body has other texts."""
     body = text[text.index("[body]") : text.index("omega =" if "omega =" in text else "linear_vel")]
-    return names(text.replace(body, swapped(body, *pairs)), text)
+    return named_motion(text.replace(body, swapped(body, *pairs)), text)
 
 
 @pytest.mark.parametrize(
@@ -272,7 +259,7 @@ def test_loads_that_do_so_here_and_there_have_no_name(
 
 def test_a_clock_takes_the_time_of_the_loads_with_it() -> None:
     """The clock of a motion that runs by one of its own is named, and no load of another pace."""
-    assert names(TIMED, TIMED, Fraction(101, 100)) == ["clock"]
+    assert named_motion(TIMED, TIMED, Fraction(101, 100)) == ["clock"]
 
 
 def test_the_point_of_a_weight_is_named_by_its_key() -> None:
@@ -339,7 +326,7 @@ samples = 61
 
 
 def sentences(changed: str) -> list[str]:
-    return [cause.sentence for cause in of_motion(changed, PULSE).causes]
+    return [cause.sentence for cause in explained_change(changed, PULSE).causes]
 
 
 @pytest.mark.parametrize(
@@ -363,7 +350,7 @@ def test_a_load_that_begins_or_ends_at_another_time_is_named(
 def test_what_no_text_may_have_is_not_tried_beside_a_switch() -> None:
     """Other values of a power or a limit make no text: w^80, say. The switch has its word."""
     text = PULSE.replace('"-0.1*', '"clip(w2^40, -0.1, 0.1)/9-0.1*')
-    assert names(text.replace("t-3", "t-2.25"), text) == ["switch at t = 3"]
+    assert named_motion(text.replace("t-3", "t-2.25"), text) == ["switch at t = 3"]
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ Phi(end, t) d(t), where Phi is the flow of small differences. Gauss's three poin
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -37,8 +37,7 @@ def sketched_rests(evidence: Evidence, sets: Sequence[Changes]) -> list[Floats]:
     if isinstance(evidence, Arcs) and evidence.answer.stepping is None and _is_smooth(evidence):
         right = evidence.answer.right
         other = {k: right.changed(own) for k, own in enumerate(sets) if "acting" in own}
-        counts = (each.coupled for each in (right, *other.values()))
-        response = ArcResponse(evidence, max(evidence.compared, *counts))
+        response = ArcResponse.of(evidence, other.values())
         of_right = evidence.of_right
         for k, equations in other.items():
             change = np.zeros_like(of_right)
@@ -64,6 +63,12 @@ class ArcResponse:
 
     arcs: Arcs
     count: int
+
+    @classmethod
+    def of(cls, arcs: Arcs, others: Iterable[Equations]) -> ArcResponse:
+        """Return the response with the components that the file has, or that some equations depend on."""
+        coupled = (each.coupled for each in (arcs.answer.right, *others))
+        return cls(arcs, max(arcs.compared, *coupled))
 
     def compared(self, equations: Equations) -> Floats:
         """Return the change of the defects by one set of equations, (components, arcs)."""

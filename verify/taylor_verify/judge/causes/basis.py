@@ -92,6 +92,11 @@ def coriolis(gyro: Floats, turn: Any = 0.0, munk: Any = 0.0) -> Floats:
     return basis(n).products(forms)
 
 
+def crossed(vector: Floats) -> Floats:
+    """Return the matrix of u -> vector x u, (..., 3, 3)."""
+    return np.asarray(np.einsum("ijk,...j->...ik", EPSILON, vector))
+
+
 def _crossed(matrix: Floats) -> Floats:
     return np.asarray(np.einsum("ijk,...jl->...ilk", EPSILON, matrix))
 

@@ -19,7 +19,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.basis import EPSILON, Basis, basis, coriolis_of
+from taylor_verify.judge.causes.basis import Basis, basis, coriolis_of, crossed
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.many_frames import (
     AFTER,
@@ -183,7 +183,7 @@ class Equations:
         groups, n = self.basis.groups, self.size
         damping = np.asarray(self.damping, dtype=float)[..., None, None]
         products, damped = coriolis_of(self.mass), -damping * self.mass
-        wheels = np.einsum("ijk,...j->...ik", EPSILON, self.rotor)
+        wheels = crossed(self.rotor)
         parts = (self.extra, products, damped, wheels)
         axes = np.broadcast_shapes(*(part.shape[:-2] for part in parts))
         factors = np.zeros((*axes, *self.extra.shape[-2:])) + self.extra

@@ -15,15 +15,15 @@ from typing import Final
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import (
     Place,
+    decimal,
+    each_named,
     places,
     rational,
     texts_of_vectors,
-    with_entry,
 )
 from taylor_verify.judge.causes.vectors_of_texts import (
     BY_R,
     BY_TRANSPOSED,
-    decimal,
     plus,
     sum_of,
     turned,
@@ -186,14 +186,9 @@ def _named_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
     """Yield definitions by texts and vectors of [space] left out, reversed, or standing still."""
     begin = {"t": f"({decimal(loads.origin)})"}
     changes: _Named = (*_SIGNS, ("stands still, as at the start", partial(renamed, names=begin)))
-    for (k, (name, entry)), (words, change) in product(enumerate(loads.definitions), changes):
-        if rational(entry) is None:
-            other = with_entry(loads.definitions, k, (name, change(str(entry))))
-            yield f"{name} {words}", replace(loads, definitions=other)
-    for (k, (name, entries)), (words, change) in product(enumerate(loads.space), changes):
-        vector = tuple(change(decimal(entry)) for entry in entries)
-        other = with_entry(loads.space, k, (name, vector))
-        yield f"{name} of [space] {words}", replace(loads, space=other)
+    for words, change in changes:
+        for name, other in each_named(loads, change):
+            yield f"{name} {words}", other
 
 
 def _exchanged(loads: Loads) -> Iterator[tuple[str, Loads]]:
@@ -255,27 +250,24 @@ def _drag_in_space(loads: Loads, some: list[str]) -> Iterator[tuple[str, Loads]]
 
     The drag are all terms with velocities alone, or those of each velocity along or about its own axis.
     """
-    known = [loads]
-    for names, is_drag in product(
-        [*([name] for name in some), *[some] * (len(some) > 1)], kinds_of_drag(loads)
-    ):
+    known, kinds = [loads], (_is_drag(loads), is_drag_of_one(loads))
+    for names, is_drag in product([*([name] for name in some), *[some] * (len(some) > 1)], kinds):
         other = _with_part(loads, names, is_drag, _along_space)
         if other not in known:
             known.append(other)
             yield f"drag of {' and '.join(names)} by coefficients along space axes", other
 
 
-def kinds_of_drag(loads: Loads) -> tuple[Callable[[str], bool], Callable[[str], bool]]:
-    """Return whether a term is one with velocities alone, and whether it is one of a single velocity."""
+def _is_drag(loads: Loads) -> Callable[[str], bool]:
+    """Return whether a term reads velocities alone."""
     is_moving, is_situated = _what_is_read(loads)
+    return lambda term: is_moving(term) and not is_situated(term)
 
-    def is_drag(term: str) -> bool:
-        return is_moving(term) and not is_situated(term)
 
-    def is_of_one(term: str) -> bool:
-        return is_drag(term) and len(VELOCITIES.intersection(NAME.findall(term))) == 1
-
-    return is_drag, is_of_one
+def is_drag_of_one(loads: Loads) -> Callable[[str], bool]:
+    """Return whether a term reads a single velocity alone."""
+    is_drag = _is_drag(loads)
+    return lambda term: is_drag(term) and len(VELOCITIES.intersection(NAME.findall(term))) == 1
 
 
 def _along_space(parts: Sequence[str], i: int) -> str:

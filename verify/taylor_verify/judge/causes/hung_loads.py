@@ -11,12 +11,11 @@ import numpy as np
 
 from taylor_verify.judge.causes.changed_texts import added
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.texts import HANGING
+from taylor_verify.judge.causes.texts import HANGING, decimal
 from taylor_verify.judge.causes.vectors_of_texts import (
     BY_R,
     BY_TRANSPOSED,
     cross,
-    decimal,
     turned,
 )
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector, scaled

@@ -17,11 +17,11 @@ import numpy as np
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.changed_texts import added, by_component, renamed, rewritten
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.texts import decimal
 from taylor_verify.judge.causes.vectors_of_texts import (
     BY_R,
     BY_TRANSPOSED,
     cross,
-    decimal,
     plus,
     sum_of,
     turned,

@@ -232,9 +232,9 @@ def _single_precision(
     digits = _digits_of(times)
     unit = 0.0 if digits is None else 10.0**-digits
     exactly = max(_PATTERN * size, 0.0 if unit > _EQUAL * size else unit)
-    equally, nearly = (max(exactly, min(unsure, part * size)) for part in (_EQUAL, _BLUR))
+    nearly = max(exactly, unsure)
     for equal, summed, (of_steps, of_sums), words in (
-        (exact, times, (equally, exactly), _SUMS),
+        (exact, times, (nearly, exactly), _SUMS),
         (
             times,
             exact,

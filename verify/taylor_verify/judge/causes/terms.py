@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.basis import EPSILON, coriolis, coriolis_of
+from taylor_verify.judge.causes.basis import coriolis, coriolis_of, crossed
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
 from taylor_verify.judge.causes.many_flows import Floats
@@ -51,7 +51,7 @@ def _faults_of_wheels(right: Equations) -> Iterator[Family]:
     yield fault("gyroscopic term of the wheels alone", "gyroscopic term", {"extra": alone})
     for words, factor in _WRONG:
         yield fault(f"wheels {words}", "wheels", {"rotor": factor * right.rotor})
-    turning = np.einsum("ijk,j->ik", EPSILON, right.rotor)
+    turning = crossed(right.rotor)
     for i, (words, factor) in product(np.flatnonzero(np.any(turning, axis=1)), _WRONG):
         rows = (factor - 1) * turning * np.eye(3)[i][:, None]
         title = f"gyroscopic term of the wheels {words} on axis {i + 1}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
@@ -112,3 +112,27 @@ def _of_hung(loads: Loads) -> Iterator[tuple[_Path, str, str]]:
         for i in range(3):
             name = f"component {i + 1} of the point of {HANGING[k]}"
             yield ("hung", k, "at", i), f"{HANGING[k]}.at[{i}]", name
+
+
+def decimal(entry: Entry) -> str:
+    """Return a number as a decimal if it or its double is one; a name stays."""
+    if isinstance(entry, str):
+        return entry
+    text = str(entry) if entry.denominator == 1 else repr(float(entry))
+    return text if entry in (Fraction(text), float(text)) else str(entry)
+
+
+def each_named(loads: Loads, change: Callable[[str], str]) -> Iterator[tuple[str, Loads]]:
+    """Yield loads with a change of a definition by a text, or of a vector of [space], if it is one."""
+    for k, (name, entry) in enumerate(loads.definitions):
+        text = change(str(entry))
+        if rational(entry) is None and text != entry:
+            yield name, replace(loads, definitions=with_entry(loads.definitions, k, (name, text)))
+    for k, (name, entries) in enumerate(loads.space):
+        texts = tuple(map(decimal, entries))
+        vector = tuple(map(change, texts))
+        if vector != texts:
+            yield (
+                f"{name} of [space]",
+                replace(loads, space=with_entry(loads.space, k, (name, vector))),
+            )

@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from fractions import Fraction
 from typing import Final
 
-from taylor_verify.judge.causes.texts import rational
+from taylor_verify.judge.causes.texts import decimal, rational
 from taylor_verify.scenes.loads.vocabulary import Entry
 
 # The entries of R, which turns from body to space axes, and of R^T, by row and column.
 BY_R: Final = "r{0}{1}"
 BY_TRANSPOSED: Final = "r{1}{0}"
-
-
-def decimal(entry: Entry) -> str:
-    """Return a number as a decimal if it or its double is one; a name stays."""
-    if isinstance(entry, str):
-        return entry
-    text = str(entry) if entry.denominator == 1 else repr(float(entry))
-    return text if entry in (Fraction(text), float(text)) else str(entry)
 
 
 def plus(one: Entry, other: str) -> str:

@@ -20,8 +20,8 @@ from taylor_verify.judge.causes.changed_texts import (
     NAME,
     VELOCITIES,
     changed_texts,
+    is_drag_of_one,
     key_of,
-    kinds_of_drag,
     readers,
     rewritten,
     terms,
@@ -331,7 +331,7 @@ def _of_drag(loads: Loads) -> Iterator[Number]:
     names, own = readers(loads, VELOCITIES), texts_of_vectors(loads)
     vectors = (name for name, _ in loads.vectors)
     every = dict[tuple[frozenset[int], ...], tuple[str, Callable[[str], set[int]], str]]()
-    kinds = {"drag by single velocities": kinds_of_drag(loads)[1], **_DRAGS}
+    kinds = {"drag by single velocities": is_drag_of_one(loads), **_DRAGS}
     for key, (words, is_drag) in product([*vectors, ""], kinds.items()):
         drag: Callable[[str], set[int]] = partial(_drag_of, names, is_drag)
         of_key = (drag(str(p.entry)) if key in ("", key_of(p)) else () for p in own)
